@@ -1,0 +1,3 @@
+#![no_std]
+//! sidestep
+pub mod arcos;
