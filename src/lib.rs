@@ -1,3 +1,37 @@
-#![no_std]
-//! sidestep
+#![cfg_attr(not(test), no_std)]
+//! sidestep: collision avoidance for small indoor robots, specified, proved, and drivable.
+//!
+//! ```text
+//! Observation ──► View ──► Law ──advice──► Shield ──► Command
+//! (raw, untrusted) (judged,   (any law,      (integers,
+//!                  with memory) may be wrong)  proved for any advice)
+//! ```
+//!
+//! [`controller::Controller`] runs one tick of that line. [`avoid::Avoid`] is the law of the
+//! paper S1; a law of your own is one [`law::Law`] away from the same shield. `spec/` says what
+//! every equation means and must keep; `proofs/` shows that it does.
+//!
+//! Nothing here allocates, panics or does I/O.
+
+// Harnesses in proofs/ name the crate as its users do, so that ordinary tests can run them too.
+#[cfg(kani)]
+extern crate self as sidestep;
+
 pub mod arcos;
+pub mod avoid;
+pub mod config;
+pub mod controller;
+pub mod kinematics;
+pub mod law;
+pub mod math;
+pub mod observation;
+pub mod preset;
+pub mod quantity;
+pub mod ring;
+pub mod shield;
+pub mod track;
+pub mod view;
+
+#[cfg(kani)]
+#[path = "../proofs/mod.rs"]
+mod proofs;

@@ -1,1 +1,17 @@
-//! Hardware binding.
+//! Binds sidestep to a robot controller on a serial line or a TCP connection.
+//!
+//! [`pilot`] is the control loop without I/O: [`session`] speaks the ARCOS protocol, [`base`]
+//! makes observations of its packets, the core decides, [`log`] records. [`drive`] runs it in
+//! real time over a [`transport`]. The rest is the program `sidestep`.
+
+pub mod base;
+pub mod config;
+pub mod demo;
+pub mod draw;
+pub mod drive;
+pub mod emulate;
+pub mod log;
+pub mod pilot;
+pub mod replay;
+pub mod session;
+pub mod transport;

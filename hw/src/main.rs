@@ -1,2 +1,397 @@
-//! The program.
-fn main() {}
+//! The program `sidestep`.
+
+use clap::{Parser, Subcommand};
+use sidestep_hw::config::{self, RobotConfig, Sonars};
+use sidestep_hw::demo::{self, Options};
+use sidestep_hw::drive::{self, Clock, Ending, Status};
+use sidestep_hw::emulate::{Line, Link, serve};
+use sidestep_hw::pilot::{Pilot, settings};
+use sidestep_hw::replay::{self, Columns};
+use sidestep_hw::{log, transport};
+use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
+use sidestep_sim::sonar::Faults;
+use std::error::Error;
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Collision avoidance for a robot base with sonars, under a shield that is proved to stop in time.
+///
+/// Start with `sidestep demo`: it needs no hardware. Then `sidestep config > robot.toml`, read it,
+/// measure your robot, and `sidestep run --port /dev/ttyUSB0 --config robot.toml --goal 3,0`.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Drive a simulated robot among simulated people, over a real pseudo-terminal.
+    ///
+    /// Leaves a folder with picture.svg, log.jsonl and summary.txt. Fails if the robot touched
+    /// anything while it moved.
+    ///
+    /// Scenarios: fig12 (the three of S1's Figure 12, the default), fig12-head-on, fig12-crossing,
+    /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table), hotel
+    /// (recorded people; needs --data).
+    Demo {
+        /// What to show.
+        #[arg(default_value = demo::FIG12)]
+        scenario: String,
+        /// The ETH recording obsmat.txt, for the scenario hotel.
+        #[arg(long, value_name = "FILE")]
+        data: Option<PathBuf>,
+        /// Where in the recording to start, seconds.
+        #[arg(long, default_value_t = 0.0)]
+        start_time: f64,
+        /// Seed of all noise.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// Share of echoes that get lost, 0 to 1.
+        #[arg(long, default_value_t = 0.02)]
+        dropout: f64,
+        /// People walk on even into a robot that stands still.
+        #[arg(long)]
+        inconsiderate: bool,
+        /// How much faster than real time.
+        #[arg(long, default_value_t = 4.0)]
+        speed: f64,
+        /// Where to make the run folders.
+        #[arg(long, default_value = "runs", value_name = "FOLDER")]
+        out: PathBuf,
+        /// The robot's configuration.
+        #[arg(long, value_name = "FILE")]
+        config: Option<PathBuf>,
+    },
+    /// Drive a real base to a goal. Ctrl-C stops the robot and ends the session.
+    Run {
+        /// A serial port such as /dev/ttyUSB0, or tcp:HOST:PORT.
+        #[arg(long)]
+        port: String,
+        /// The robot's configuration; see `sidestep config`.
+        #[arg(long, value_name = "FILE")]
+        config: PathBuf,
+        /// The goal in metres, x forward and y left of where the robot starts.
+        #[arg(long, value_name = "X,Y", value_parser = goal, allow_hyphen_values = true)]
+        goal: [f32; 2],
+        /// The serial port's baud rate; found out if not given.
+        #[arg(long)]
+        baud: Option<u32>,
+        /// Where to write the log.
+        #[arg(long, default_value = "sidestep-log.jsonl", value_name = "FILE")]
+        log: PathBuf,
+    },
+    /// Be the robot: a simulated base for other hosts, on a pseudo-terminal or a TCP port.
+    Emulate {
+        /// Make PATH a link to a pseudo-terminal.
+        #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
+        pty: Option<PathBuf>,
+        /// Listen on ADDRESS, such as 127.0.0.1:8101.
+        #[arg(long, value_name = "ADDRESS", required_unless_present = "pty")]
+        tcp: Option<String>,
+        /// The scenario around the robot; see `sidestep demo --help`.
+        #[arg(long, default_value = NAMES[0])]
+        scenario: String,
+        /// Seed of all noise.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// End by itself after this many seconds.
+        #[arg(long)]
+        seconds: Option<f64>,
+    },
+    /// Run the controller again on a recorded log, or on a CSV of sonar ranges.
+    ///
+    /// A log must give the very same commands; if not, the first difference is shown and the exit
+    /// code is 1. A CSV has one row of ranges in metres per sample.
+    Replay {
+        /// A log (log.jsonl) or a .csv file.
+        file: PathBuf,
+        /// How the columns of a CSV become sonars.
+        #[arg(long, value_enum, default_value = "thirds")]
+        columns: Columns,
+        /// Pretended time between two rows of a CSV, ms.
+        #[arg(long, default_value_t = 100)]
+        period: u64,
+        /// The configuration for a CSV.
+        #[arg(long, value_name = "FILE")]
+        config: Option<PathBuf>,
+    },
+    /// Print the default configuration, commented.
+    Config,
+}
+
+fn goal(text: &str) -> Result<[f32; 2], String> {
+    let wrong = || format!("{text:?} is not X,Y in metres, each within ±1000");
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| {
+        text.trim()
+            .parse::<f32>()
+            .ok()
+            .filter(|number| number.abs() <= 1000.0)
+            .ok_or_else(wrong)
+    };
+    Ok([number(x)?, number(y)?])
+}
+
+fn read_config(file: Option<&Path>) -> Result<RobotConfig, Box<dyn Error>> {
+    let Some(file) = file else {
+        return Ok(RobotConfig::default());
+    };
+    let text =
+        std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    Ok(config::parse(&text, &file.display().to_string())?)
+}
+
+/// Set by Ctrl-C and by SIGTERM.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let handler = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    if let Err(error) = handler {
+        // Without it Ctrl-C would end the program with the robot still under way.
+        eprintln!("sidestep: cannot catch Ctrl-C: {error}");
+        return ExitCode::FAILURE;
+    }
+    match run(arguments.command) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("sidestep: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
+    match command {
+        Command::Demo {
+            scenario,
+            data,
+            start_time,
+            seed,
+            dropout,
+            inconsiderate,
+            speed,
+            out,
+            config,
+        } => {
+            if !(0.1..=20.0).contains(&speed) {
+                return Err(format!("--speed is {speed}, allowed is 0.1 to 20").into());
+            }
+            let knobs = Knobs {
+                seed,
+                courteous: !inconsiderate,
+                sonar_faults: Faults {
+                    dropout,
+                    ..Faults::default()
+                },
+                ..Knobs::default()
+            };
+            run_demo(&Options {
+                scenario,
+                data,
+                start_time,
+                knobs,
+                speed,
+                out,
+                config: read_config(config.as_deref())?,
+            })
+        }
+        Command::Run {
+            port,
+            config,
+            goal,
+            baud,
+            log,
+        } => {
+            let config = read_config(Some(&config))?;
+            match config.sonars {
+                Sonars::Front8 => run_base::<8>(&port, config, goal, baud, &log),
+                Sonars::All16 => run_base::<16>(&port, config, goal, baud, &log),
+            }
+        }
+        Command::Emulate {
+            pty,
+            tcp,
+            scenario,
+            seed,
+            seconds,
+        } => emulate(pty.as_deref(), tcp.as_deref(), &scenario, seed, seconds),
+        Command::Replay {
+            file,
+            columns,
+            period,
+            config,
+        } => {
+            if file.extension().is_some_and(|extension| extension == "csv") {
+                replay_table(&file, columns, period, &read_config(config.as_deref())?)
+            } else {
+                replay_log(&file)
+            }
+        }
+        Command::Config => {
+            print!("{}", config::default_toml());
+            Ok(ExitCode::SUCCESS)
+        }
+    }
+}
+
+fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
+    let mut status = Status::default();
+    let mut contacts = 0;
+    for scenario in demo::scenarios(options)? {
+        let (folder, summary) = demo::run(&scenario, options, &INTERRUPTED, &mut status)?;
+        contacts += summary.contacts_while_moving();
+        println!("picture: {}\n", folder.join("picture.svg").display());
+        if summary.ending == Ending::Operator {
+            break;
+        }
+    }
+    if contacts > 0 {
+        return Err(format!("the robot touched something {contacts} times while it moved").into());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn run_base<const N: usize>(
+    port: &str,
+    config: RobotConfig,
+    goal: [f32; 2],
+    baud: Option<u32>,
+    log: &Path,
+) -> Result<ExitCode, Box<dyn Error>> {
+    // A log of an earlier run is somebody's record: never written over.
+    let file = File::create_new(log).map_err(|error| format!("log {}: {error}", log.display()))?;
+    let serial = !port.starts_with("tcp:");
+    let mut pilot = Pilot::<_, N>::new(
+        config,
+        goal,
+        settings(&config, serial, baud),
+        Box::new(BufWriter::new(file)),
+    )?;
+    let mut status = Status::default();
+    let ending = drive::run(
+        &mut pilot,
+        || transport::open(port),
+        Clock::new(1.0),
+        None,
+        &INTERRUPTED,
+        &mut status,
+    )?;
+    if let Some(error) = pilot.log_error() {
+        return Err(format!("log {}: not complete: {error}", log.display()).into());
+    }
+    let tally = pilot.tally();
+    let stops: Vec<String> = tally
+        .stops
+        .iter()
+        .map(|(kind, count)| format!("{kind} {count}"))
+        .collect();
+    status.keep(&format!(
+        "ended: {ending:?}; {} ticks; stops: {}; log: {}",
+        tally.ticks,
+        if stops.is_empty() {
+            "none".to_owned()
+        } else {
+            stops.join(", ")
+        },
+        log.display()
+    ));
+    Ok(if ending == Ending::Arrived {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(2)
+    })
+}
+
+fn emulate(
+    pty: Option<&Path>,
+    tcp: Option<&str>,
+    scenario: &str,
+    seed: u64,
+    seconds: Option<f64>,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let knobs = Knobs {
+        seed,
+        ..Knobs::default()
+    };
+    let scenario = Scenario::named(scenario, &knobs)?;
+    let simulation = scenario.simulate()?;
+    let [x, y] = demo::goal_from_start(&scenario);
+    let (line, _link) = match (pty, tcp) {
+        (Some(path), _) => {
+            let (line, name) = Line::pty()?;
+            let link =
+                Link::new(path, &name).map_err(|error| format!("{}: {error}", path.display()))?;
+            println!("robot on {} ({name})", path.display());
+            (line, Some(link))
+        }
+        (None, Some(address)) => {
+            let (line, address) =
+                Line::tcp(address).map_err(|error| format!("{address}: {error}"))?;
+            println!("robot on tcp:{address}");
+            (line, None)
+        }
+        (None, None) => return Err("give --pty PATH or --tcp ADDRESS".into()),
+    };
+    println!("{}; its goal is {x},{y}", scenario.description);
+    let clock = Clock::new(1.0);
+    let simulation = std::thread::scope(|scope| {
+        let server = scope.spawn(|| serve(simulation, line, clock, &INTERRUPTED));
+        while !INTERRUPTED.load(Ordering::Relaxed) {
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            if seconds.is_some_and(|seconds| clock.now() as f64 >= seconds * 1000.0) {
+                INTERRUPTED.store(true, Ordering::Relaxed);
+            }
+        }
+        server.join()
+    })
+    .map_err(|_| "the simulated robot failed")?;
+    println!("{:#?}", simulation.outcome());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn replay_log(file: &Path) -> Result<ExitCode, Box<dyn Error>> {
+    let input = File::open(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let log =
+        log::read(BufReader::new(input)).map_err(|error| format!("{}: {error}", file.display()))?;
+    let replayed = replay::log(&log).map_err(|error| format!("{}: {error}", file.display()))?;
+    if let Some(line) = log.cut {
+        println!("the log ends in the middle of line {line}: replayed up to there");
+    }
+    match replayed.parting {
+        None => {
+            println!("{} ticks, every command the same", replayed.ticks);
+            Ok(ExitCode::SUCCESS)
+        }
+        Some((line, logged, now)) => {
+            println!(
+                "they part at line {line}, tick {}:\n  logged {logged:?}\n  now    {now:?}",
+                replayed.ticks
+            );
+            Ok(ExitCode::FAILURE)
+        }
+    }
+}
+
+fn replay_table(
+    file: &Path,
+    columns: Columns,
+    period: u64,
+    config: &RobotConfig,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let text =
+        std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let table = replay::table(&text, columns, config, period)
+        .map_err(|error| format!("{}: {error}", file.display()))?;
+    println!("{table:#?}");
+    Ok(if table.near_but_moving == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,288 @@
+//! A run as a picture: robot, people, walls, and every stop with its reason.
+
+use sidestep_sim::geometry::{Point, Pose, Vector};
+use sidestep_sim::simulation::Sample;
+use sidestep_sim::world::{Shape, World};
+use std::collections::BTreeMap;
+use svg::Document;
+use svg::node::element::{Circle, Group, Line, Polygon, Polyline, Rectangle, Text, Title};
+
+/// A stop to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    /// When it began, ms.
+    pub t: u64,
+    /// Why.
+    pub reason: String,
+}
+
+/// What a picture shows.
+pub struct Picture<'a> {
+    /// Above the picture.
+    pub title: &'a str,
+    /// Under the title, a line each.
+    pub notes: &'a [String],
+    /// The world.
+    pub world: &'a World,
+    /// Where everyone was.
+    pub trace: &'a [Sample],
+    /// The goal.
+    pub goal: Point,
+    /// Radius of the robot, m.
+    pub robot_radius: f64,
+    /// Stops in order.
+    pub stops: &'a [Stop],
+}
+
+/// Pixels per metre.
+const SCALE: f64 = 110.0;
+/// Everyone is drawn as a disc this often, ms.
+const INTERVAL: u64 = 3000;
+const ROBOT: &str = "#1f5fbf";
+const PERSON: &str = "#2b8a3e";
+const STOP: &str = "#d6336c";
+const WALL: &str = "#495057";
+
+fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
+    Text::new(content)
+        .set("x", round(x))
+        .set("y", round(y))
+        .set("font-size", size)
+        .set("font-family", "sans-serif")
+}
+
+fn round(x: f64) -> f64 {
+    (x * 10.0).round() / 10.0
+}
+
+/// Draws the picture as SVG.
+#[must_use]
+pub fn draw(picture: &Picture) -> String {
+    // What is to be seen: the robot's way, the goal, and some room around.
+    let mut low = picture.goal;
+    let mut high = picture.goal;
+    for sample in picture.trace {
+        low = low.inf(&sample.pose.position);
+        high = high.sup(&sample.pose.position);
+    }
+    let margin = Vector::new(1.6, 1.6);
+    let (low, high) = (low - margin, high + margin);
+    let header = 34.0 + 18.0 * picture.notes.len() as f64;
+    let legend = 22.0 + 16.0 * picture.stops.len() as f64;
+    let width = ((high.x - low.x) * SCALE).max(640.0);
+    let height = (high.y - low.y) * SCALE;
+    let at = |p: Point| {
+        (
+            round((p.x - low.x) * SCALE),
+            round(header + (high.y - p.y) * SCALE),
+        )
+    };
+
+    let mut scene = Group::new();
+    for shape in picture.world.obstacles() {
+        scene = scene.add(obstacle(shape, &at));
+    }
+    scene = metres(scene, low, high, &at);
+
+    let mut ways: BTreeMap<usize, Vec<(u64, Point)>> = BTreeMap::new();
+    for sample in picture.trace {
+        for (person, position) in &sample.people {
+            ways.entry(*person)
+                .or_default()
+                .push((sample.time_ms, *position));
+        }
+    }
+    for (person, way) in &ways {
+        let radius = picture
+            .world
+            .people()
+            .get(*person)
+            .map_or(0.25, |person| person.radius());
+        scene = scene.add(walk(way, radius, PERSON, &at));
+    }
+    let way: Vec<(u64, Point)> = picture
+        .trace
+        .iter()
+        .map(|sample| (sample.time_ms, sample.pose.position))
+        .collect();
+    scene = scene.add(walk(&way, picture.robot_radius, ROBOT, &at));
+    let (x, y) = at(picture.goal);
+    scene = scene
+        .add(cross(x, y, 9.0, "#e8590c"))
+        .add(text(x + 12.0, y + 4.0, 13.0, "goal"));
+
+    let mut list = Group::new().add(text(
+        8.0,
+        header + height + 16.0,
+        13.0,
+        if picture.stops.is_empty() {
+            "no stops"
+        } else {
+            "stops, in order:"
+        },
+    ));
+    for (i, stop) in picture.stops.iter().enumerate() {
+        let here = way
+            .iter()
+            .min_by_key(|(t, _)| t.abs_diff(stop.t))
+            .map_or(picture.goal, |(_, position)| *position);
+        let (x, y) = at(here);
+        let line = format!(
+            "{}. {:.1} s: {}",
+            i + 1,
+            stop.t as f64 / 1000.0,
+            stop.reason
+        );
+        scene = scene.add(
+            Group::new()
+                .add(Title::new(line.clone()))
+                .add(cross(x, y, 5.0, STOP))
+                .add(text(x + 6.0, y - 6.0, 11.0, &(i + 1).to_string()).set("fill", STOP)),
+        );
+        list = list.add(text(
+            16.0,
+            header + height + 34.0 + 16.0 * i as f64,
+            12.0,
+            &line,
+        ));
+    }
+
+    let mut document = Document::new()
+        .set(
+            "viewBox",
+            (0.0, 0.0, round(width), round(header + height + legend)),
+        )
+        .set("width", round(width))
+        .set("height", round(header + height + legend))
+        .add(
+            Rectangle::new()
+                .set("width", "100%")
+                .set("height", "100%")
+                .set("fill", "white"),
+        )
+        .add(text(8.0, 22.0, 17.0, picture.title).set("font-weight", "bold"));
+    for (i, note) in picture.notes.iter().enumerate() {
+        document = document.add(text(8.0, 42.0 + 18.0 * i as f64, 13.0, note));
+    }
+    document.add(scene).add(list).to_string()
+}
+
+fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
+    let stroke = |x1: f64, y1: f64, x2: f64, y2: f64| {
+        Line::new()
+            .set("x1", x + x1)
+            .set("y1", y + y1)
+            .set("x2", x + x2)
+            .set("y2", y + y2)
+            .set("stroke", colour)
+            .set("stroke-width", 2)
+    };
+    Group::new()
+        .add(stroke(-size, -size, size, size))
+        .add(stroke(-size, size, size, -size))
+}
+
+fn obstacle(shape: &Shape, at: &dyn Fn(Point) -> (f64, f64)) -> Group {
+    let polygon = |corners: &[Point]| {
+        let points: Vec<String> = corners
+            .iter()
+            .map(|corner| {
+                let (x, y) = at(*corner);
+                format!("{x},{y}")
+            })
+            .collect();
+        Polygon::new()
+            .set("points", points.join(" "))
+            .set("fill", "#ced4da")
+            .set("stroke", WALL)
+            .set("stroke-width", 3)
+    };
+    match *shape {
+        Shape::Wall { from, to } => Group::new().add(polygon(&[from, to])),
+        Shape::Box {
+            pose,
+            length,
+            width,
+        } => {
+            let corners = [(0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)];
+            let corners = corners.map(|(x, y)| {
+                pose.compose(&Pose::new(x * length, y * width, 0.0))
+                    .position
+            });
+            Group::new().add(polygon(&corners))
+        }
+        Shape::Disc { centre, radius } => {
+            let (x, y) = at(centre);
+            Group::new().add(
+                Circle::new()
+                    .set("cx", x)
+                    .set("cy", y)
+                    .set("r", round(radius * SCALE))
+                    .set("fill", "#ced4da")
+                    .set("stroke", WALL),
+            )
+        }
+    }
+}
+
+/// A grid of metres, faint.
+fn metres(mut scene: Group, low: Point, high: Point, at: &dyn Fn(Point) -> (f64, f64)) -> Group {
+    let line = |from: Point, to: Point| {
+        let ((x1, y1), (x2, y2)) = (at(from), at(to));
+        Line::new()
+            .set("x1", x1)
+            .set("y1", y1)
+            .set("x2", x2)
+            .set("y2", y2)
+            .set("stroke", "#dee2e6")
+            .set("stroke-width", 0.6)
+    };
+    for i in low.x.ceil() as i64..=high.x.floor() as i64 {
+        let x = i as f64;
+        scene = scene.add(line(Point::new(x, low.y), Point::new(x, high.y)));
+    }
+    for i in low.y.ceil() as i64..=high.y.floor() as i64 {
+        let y = i as f64;
+        scene = scene.add(line(Point::new(low.x, y), Point::new(high.x, y)));
+    }
+    scene
+}
+
+/// Someone's way, with a disc and the time in seconds now and then.
+fn walk(
+    way: &[(u64, Point)],
+    radius: f64,
+    colour: &str,
+    at: &dyn Fn(Point) -> (f64, f64),
+) -> Group {
+    let points: Vec<String> = way
+        .iter()
+        .map(|(_, position)| {
+            let (x, y) = at(*position);
+            format!("{x},{y}")
+        })
+        .collect();
+    let mut group = Group::new().add(
+        Polyline::new()
+            .set("points", points.join(" "))
+            .set("fill", "none")
+            .set("stroke", colour)
+            .set("stroke-width", 2),
+    );
+    for (t, position) in way.iter().filter(|(t, _)| t % INTERVAL == 0) {
+        let (x, y) = at(*position);
+        group = group
+            .add(
+                Circle::new()
+                    .set("cx", x)
+                    .set("cy", y)
+                    .set("r", round(radius * SCALE))
+                    .set("fill", colour)
+                    .set("fill-opacity", 0.08)
+                    .set("stroke", colour)
+                    .set("stroke-opacity", 0.5),
+            )
+            .add(text(x - 6.0, y + 4.0, 10.0, &format!("{}", t / 1000)).set("fill", colour));
+    }
+    group
+}

@@ -1,0 +1,212 @@
+//! The control loop in real time: one thread, one port.
+
+use crate::pilot::Pilot;
+use crate::session::Output;
+use crate::transport::{Transport, TransportError};
+use sidestep::law::Law;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// A clock in ms since it was made, running `speed` times as fast as the wall's.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    start: Instant,
+    speed: f64,
+}
+
+impl Clock {
+    /// A clock that starts now.
+    #[must_use]
+    pub fn new(speed: f64) -> Self {
+        Self {
+            start: Instant::now(),
+            speed,
+        }
+    }
+
+    /// Its time in ms.
+    #[must_use]
+    pub fn now(&self) -> u64 {
+        (self.start.elapsed().as_secs_f64() * 1000.0 * self.speed) as u64
+    }
+}
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The goal was reached.
+    Arrived,
+    /// The operator asked for it.
+    Operator,
+    /// The time was over.
+    TimeLimit,
+    /// The session ended by itself.
+    Closed,
+}
+
+/// How a run is shown: a line that is rewritten on a terminal, else a line now and then.
+pub struct Status {
+    terminal: bool,
+    shown: Option<String>,
+    shown_at: u64,
+}
+
+impl Default for Status {
+    fn default() -> Self {
+        Self {
+            terminal: std::io::stdout().is_terminal(),
+            shown: None,
+            shown_at: 0,
+        }
+    }
+}
+
+impl Status {
+    /// A line to keep.
+    pub fn keep(&mut self, line: &str) {
+        if self.terminal && self.shown.take().is_some() {
+            print!("\r\x1b[K");
+        }
+        println!("{line}");
+    }
+
+    /// The line of the moment. `key` tells lines apart that are worth showing at once.
+    fn show(&mut self, now: u64, key: &str, line: &str) {
+        let changed = self.shown.as_deref() != Some(key);
+        if self.terminal {
+            print!("\r\x1b[K{line}");
+            let _ = std::io::stdout().flush();
+        } else if changed || now >= self.shown_at + 5000 {
+            println!("{line}");
+        } else {
+            return;
+        }
+        self.shown = Some(key.to_owned());
+        self.shown_at = now;
+    }
+}
+
+fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>, now: u64) {
+    while let Some((t, text)) = pilot.next_event() {
+        status.keep(&format!("{:8.1} s  {text}", t as f64 / 1000.0));
+    }
+    let Some(decision) = pilot.latest() else {
+        return;
+    };
+    let nearest = decision.view.map_or_else(
+        || "     ?".to_owned(),
+        |view| {
+            let nearest = view.range.iter().min().copied().unwrap_or(0);
+            format!("{:4.2} m", f64::from(nearest) / 1000.0)
+        },
+    );
+    let (state, reason) = match (&decision.stop, &decision.limit) {
+        (Some(stop), _) => ("STOP", stop.to_string()),
+        (None, Some(limit)) => (decision.mode, format!("limited: {limit}")),
+        (None, None) => (decision.mode, String::new()),
+    };
+    let key = match &decision.stop {
+        Some(stop) => crate::pilot::kind_of(*stop),
+        None => decision.mode,
+    };
+    let line = format!(
+        "{:8.1} s  {state:<9} v {:4} mm/s  turn {:5} mrad/s  nearest echo {nearest}  {reason}",
+        now as f64 / 1000.0,
+        decision.command.speed(),
+        decision.command.turn_rate(),
+    );
+    status.show(now, key, &line);
+}
+
+fn carry_out(transport: &mut dyn Transport, output: Output) -> Result<(), TransportError> {
+    match output {
+        Output::Send(bytes) => transport.write_all(&bytes),
+        Output::SetBaud(baud) => transport.set_baud(baud),
+        Output::Discard => transport.discard_input(),
+    }
+}
+
+/// Drives until the run ends; the robot is stopped and the session closed before it returns.
+///
+/// `open` opens the port, again after every failure. `limit` is in ms of the clock.
+///
+/// # Errors
+/// If the port cannot be opened to begin with.
+pub fn run<L: Law<N>, const N: usize>(
+    pilot: &mut Pilot<L, N>,
+    mut open: impl FnMut() -> Result<Box<dyn Transport>, TransportError>,
+    clock: Clock,
+    limit: Option<u64>,
+    interrupted: &AtomicBool,
+    status: &mut Status,
+) -> Result<Ending, TransportError> {
+    let mut port = Some(open()?);
+    let mut retry_at = 0;
+    let mut ending = None;
+    let mut closing_since = 0;
+    let mut buffer = [0; 4096];
+    loop {
+        let now = clock.now();
+        match &mut port {
+            Some(transport) => {
+                let step = || -> Result<(), TransportError> {
+                    let count = transport.read(&mut buffer)?;
+                    let begun = Instant::now();
+                    let now = clock.now();
+                    if let Some(bytes) = buffer.get(..count)
+                        && !bytes.is_empty()
+                    {
+                        pilot.receive(bytes, now);
+                    }
+                    while let Some(output) = pilot.poll(now) {
+                        carry_out(transport.as_mut(), output)?;
+                    }
+                    pilot.measured(begun.elapsed().as_micros() as u64);
+                    Ok(())
+                };
+                if let Err(error) = { step }() {
+                    pilot.transport_lost(&error.to_string(), now);
+                    port = None;
+                    retry_at = now + 1000;
+                }
+            }
+            None => {
+                std::thread::sleep(Duration::from_millis(10));
+                if now >= retry_at {
+                    match open() {
+                        Ok(transport) => {
+                            port = Some(transport);
+                            pilot.transport_restored(now);
+                        }
+                        Err(_) => retry_at = now + 1000,
+                    }
+                }
+            }
+        }
+        show(status, pilot, now);
+
+        if ending.is_none() {
+            ending = if interrupted.load(Ordering::Relaxed) {
+                Some(Ending::Operator)
+            } else if pilot.tally().arrived.is_some() {
+                Some(Ending::Arrived)
+            } else if limit.is_some_and(|limit| now >= limit) {
+                Some(Ending::TimeLimit)
+            } else if pilot.session().is_closed() {
+                return Ok(Ending::Closed);
+            } else {
+                None
+            };
+            if ending.is_some() {
+                closing_since = now;
+                pilot.close(now);
+            }
+        } else if let Some(ending) = ending
+            && (pilot.session().is_closed() || port.is_none() || now >= closing_since + 3000)
+        {
+            show(status, pilot, now);
+            return Ok(ending);
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! The control loop without I/O: session, base, controller and log, advanced by bytes and time.
+//!
+//! The same code drives a robot in real time and a simulated one in virtual time.
+
+use crate::base::{self, Base};
+use crate::config::RobotConfig;
+use crate::log::{Halt, Header, Record, Told, to_hex, write_line};
+use crate::session::{Event, Output, Session, Settings};
+use nalgebra::Vector2;
+use sidestep::arcos::BaseParameters;
+use sidestep::avoid::Avoid;
+use sidestep::controller::{Controller, Decision};
+use sidestep::law::Law;
+use sidestep::quantity::{Instant, OutOfRange};
+use sidestep::shield::StopReason;
+use std::collections::{BTreeMap, VecDeque};
+use std::io::Write;
+
+/// What a run has come to so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tally {
+    /// Ticks of the controller.
+    pub ticks: u64,
+    /// Longest time between two ticks, ms.
+    pub worst_period: u64,
+    /// Longest computation of a tick, µs, as the caller measured it.
+    pub worst_tick: u64,
+    /// How often each reason made the robot stop: stops begun, by the kind of reason.
+    pub stops: BTreeMap<String, u64>,
+    /// Bytes that belong to no good frame, and packets that were refused.
+    pub rejected: u64,
+    /// The goal was reached at this time, ms.
+    pub arrived: Option<u64>,
+}
+
+/// A stop as it began, to be shown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StopBegun {
+    /// When, ms.
+    pub t: u64,
+    /// Where the robot believed to be, metres in the odometry frame; none without odometry.
+    pub position: Option<[f32; 2]>,
+    /// Why.
+    pub reason: StopReason,
+}
+
+/// The control loop.
+pub struct Pilot<L, const N: usize> {
+    session: Session,
+    config: RobotConfig,
+    goal: Vector2<f32>,
+    base: Base<N>,
+    controller: Controller<L, N>,
+    log: Box<dyn Write + Send>,
+    log_error: Option<String>,
+    header_written: bool,
+    events: VecDeque<(u64, String)>,
+    last_tick: Option<u64>,
+    stop: Option<StopReason>,
+    latest: Option<Decision<N>>,
+    tally: Tally,
+    stops: Vec<StopBegun>,
+    /// The link was lost with the robot in motion: its odometry may not be the one we knew.
+    lost: Option<String>,
+}
+
+/// The session's settings for a configuration: the base's own limits follow the shield's model.
+#[must_use]
+pub fn settings(config: &RobotConfig, serial: bool, baud: Option<u32>) -> Settings {
+    let core = &config.core;
+    let whole = |value: f32| value.clamp(1.0, 65_535.0) as u16;
+    let defaults = Settings::default();
+    Settings {
+        bauds: match (serial, baud) {
+            (false, _) => Vec::new(),
+            (true, Some(baud)) => vec![baud],
+            (true, None) => defaults.bauds,
+        },
+        preferred_baud: if serial {
+            defaults.preferred_baud
+        } else {
+            None
+        },
+        max_velocity_mm_s: whole(core.speed_max * 1000.0),
+        max_rotation_deg_s: whole(core.turn_rate_max.to_degrees().ceil()),
+        acceleration_mm_s2: whole(core.acceleration * 1000.0),
+        // The shield counts on this much; the base is told to brake that hard.
+        deceleration_mm_s2: whole((core.braking * 1000.0).ceil()),
+        rotational_acceleration_deg_s2: whole(core.turn_acceleration.to_degrees()),
+        rotational_deceleration_deg_s2: whole(core.turn_acceleration.to_degrees()),
+        link_timeout_ms: (core.odometry_age_max * 1000.0) as u64,
+        ..defaults
+    }
+}
+
+impl<const N: usize> Pilot<Avoid, N> {
+    /// A pilot with S1's law, to a goal (metres) in the frame in which the robot starts at (0, 0)
+    /// looking along x.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if the goal is, or the ring does not fit.
+    pub fn new(
+        config: RobotConfig,
+        goal: [f32; 2],
+        settings: Settings,
+        log: Box<dyn Write + Send>,
+    ) -> Result<Self, OutOfRange> {
+        Self::with_law(Avoid::new(config.core), config, goal, settings, log)
+    }
+}
+
+impl<L: Law<N>, const N: usize> Pilot<L, N> {
+    /// A pilot with any law.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if the goal is, or the ring does not fit.
+    pub fn with_law(
+        law: L,
+        config: RobotConfig,
+        goal: [f32; 2],
+        settings: Settings,
+        log: Box<dyn Write + Send>,
+    ) -> Result<Self, OutOfRange> {
+        let goal = Vector2::new(goal[0], goal[1]);
+        Ok(Self {
+            session: Session::new(settings, 0),
+            config,
+            goal,
+            base: Base::new(BaseParameters::P3DX_SH, config.heading),
+            controller: Controller::new(config.core, base::ring(&config)?, law, goal)?,
+            log,
+            log_error: None,
+            header_written: false,
+            events: VecDeque::new(),
+            last_tick: None,
+            stop: None,
+            latest: None,
+            tally: Tally::default(),
+            stops: Vec::new(),
+            lost: None,
+        })
+    }
+
+    /// Takes in bytes from the robot, and ticks the controller for every packet among them.
+    pub fn receive(&mut self, bytes: &[u8], now: u64) {
+        self.session.receive(bytes, now);
+        self.handle_events(now);
+    }
+
+    /// What is to be done with the transport next.
+    pub fn poll(&mut self, now: u64) -> Option<Output> {
+        let output = self.session.poll(now);
+        self.handle_events(now);
+        output
+    }
+
+    fn handle_events(&mut self, now: u64) {
+        while let Some(event) = self.session.next_event() {
+            match event {
+                Event::Information { frame, information } => {
+                    let observation = self.base.observe(&information, Instant(now));
+                    let decision = self.controller.tick(&observation);
+                    self.tick(now, &decision, |t, told| Record::Tick {
+                        t,
+                        sip: to_hex(&frame),
+                        told,
+                    });
+                }
+                Event::Connected { robot, parameters } => {
+                    // After a lost link the robot is where its counters say, as before.
+                    if !self.header_written {
+                        self.base = Base::new(parameters, self.config.heading);
+                        self.begin_log(parameters.subclass);
+                    }
+                    self.note(
+                        now,
+                        format!(
+                            "connected to {} ({} {})",
+                            robot.name, robot.class, robot.subclass
+                        ),
+                    );
+                }
+                Event::LinkLost(loss) => {
+                    self.lost = Some(loss.to_string());
+                    self.note(now, format!("link lost: {loss}"));
+                    self.halt(Halt::LinkLost, now);
+                }
+                Event::Rejected(rejection) => {
+                    self.tally.rejected += 1;
+                    self.note(now, format!("rejected: {rejection}"));
+                }
+                Event::Disabled(hindrance) => {
+                    self.note(now, format!("no longer ready: {hindrance}"));
+                }
+                Event::Waiting(hindrance) => self.note(now, format!("waiting: {hindrance}")),
+                Event::Ready { resumed } => {
+                    self.lost = None;
+                    self.note(
+                        now,
+                        if resumed { "ready again" } else { "ready" }.to_owned(),
+                    );
+                }
+                Event::AlreadyOpen => {
+                    self.note(now, "closed a session that was open already".to_owned());
+                }
+                Event::Configured(stored) => self.note(
+                    now,
+                    format!(
+                        "packets every {} ms, watchdog {} ms",
+                        stored.sip_cycle_ms, stored.watchdog_ms
+                    ),
+                ),
+                Event::BaudKept { asked, kept } => {
+                    self.note(now, format!("baud rate stays {kept}, asked for {asked}"));
+                }
+                Event::Closed => self.note(now, "closed".to_owned()),
+            }
+        }
+    }
+
+    /// Carries out a decision and records it.
+    fn tick(&mut self, now: u64, decision: &Decision<N>, record: impl FnOnce(u64, Told) -> Record) {
+        let command = decision.command;
+        self.session
+            .command(command.speed(), degrees(command.turn_rate()), now);
+        self.tally.ticks += 1;
+        if let Some(last) = self.last_tick {
+            self.tally.worst_period = self.tally.worst_period.max(now.saturating_sub(last));
+        }
+        self.last_tick = Some(now);
+        if decision.mode == "arrived" && self.tally.arrived.is_none() {
+            self.tally.arrived = Some(now);
+        }
+        // A stop begins where there was none, or where its kind changes.
+        let kind = |reason: &StopReason| std::mem::discriminant(reason);
+        if let Some(reason) = decision.stop
+            && self.stop.as_ref().map(kind) != Some(kind(&reason))
+        {
+            *self
+                .tally
+                .stops
+                .entry(kind_of(reason).to_owned())
+                .or_default() += 1;
+            let position = decision
+                .view
+                .map(|view| [view.pose.position.x, view.pose.position.y]);
+            self.stops.push(StopBegun {
+                t: now,
+                position,
+                reason,
+            });
+        }
+        self.stop = decision.stop;
+        self.latest = Some(*decision);
+        let record = record(now, told(decision));
+        self.write(&record);
+    }
+
+    /// Stops for something that no packet shows.
+    pub fn halt(&mut self, reason: Halt, now: u64) {
+        let decision = self.controller.halt(reason.into(), Instant(now));
+        self.tick(now, &decision, |t, told| Record::Halt { t, reason, told });
+    }
+
+    /// Stops the robot and ends the session.
+    pub fn close(&mut self, now: u64) {
+        self.halt(Halt::Operator, now);
+        self.session.stop(now);
+        self.session.close(now);
+    }
+
+    /// The port failed.
+    pub fn transport_lost(&mut self, reason: &str, now: u64) {
+        self.session.transport_lost(reason);
+        self.handle_events(now);
+    }
+
+    /// The port is open again.
+    pub fn transport_restored(&mut self, now: u64) {
+        self.session.transport_restored(now);
+        self.handle_events(now);
+    }
+
+    /// Notes how long the caller measured a tick to take, in µs.
+    pub fn measured(&mut self, micros: u64) {
+        self.tally.worst_tick = self.tally.worst_tick.max(micros);
+    }
+
+    fn begin_log(&mut self, subclass: &str) {
+        if !self.header_written {
+            self.header_written = true;
+            let header = Header::new(&self.config, subclass, [self.goal.x, self.goal.y]);
+            self.write(&header);
+            // What happened before the robot said who it is.
+            for (t, text) in std::mem::take(&mut self.events) {
+                self.note(t, text);
+            }
+        }
+    }
+
+    fn note(&mut self, t: u64, text: String) {
+        if self.header_written {
+            self.write(&Record::Event {
+                t,
+                text: text.clone(),
+            });
+        }
+        self.events.push_back((t, text));
+    }
+
+    fn write(&mut self, line: &impl serde::Serialize) {
+        if !self.header_written {
+            return;
+        }
+        if let Err(error) = write_line(&mut self.log, line) {
+            // The robot is still driven safely, but the run must not look recorded.
+            self.log_error.get_or_insert_with(|| error.to_string());
+        }
+    }
+
+    /// What happened since this was last asked, with times in ms.
+    pub fn next_event(&mut self) -> Option<(u64, String)> {
+        self.events.pop_front()
+    }
+
+    /// What the controller decided last.
+    pub const fn latest(&self) -> Option<&Decision<N>> {
+        self.latest.as_ref()
+    }
+
+    /// What the run has come to.
+    pub const fn tally(&self) -> &Tally {
+        &self.tally
+    }
+
+    /// The stops as they began.
+    pub fn stops(&self) -> &[StopBegun] {
+        &self.stops
+    }
+
+    /// Why the log is not complete, if it is not.
+    pub fn log_error(&self) -> Option<&str> {
+        self.log_error.as_deref()
+    }
+
+    /// The session.
+    pub const fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// Why there is no link, if there was one.
+    pub fn lost(&self) -> Option<&str> {
+        self.lost.as_deref()
+    }
+}
+
+impl From<Halt> for StopReason {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::LinkLost => Self::LinkLost,
+            Halt::Operator => Self::Operator,
+        }
+    }
+}
+
+/// A decision as it is logged.
+#[must_use]
+pub fn told<const N: usize>(decision: &Decision<N>) -> Told {
+    Told {
+        v: decision.command.speed(),
+        w: decision.command.turn_rate(),
+        mode: decision.mode.to_owned(),
+        stop: decision.stop.map(|reason| reason.to_string()),
+        limit: decision.limit.map(|limit| limit.to_string()),
+    }
+}
+
+/// The kind of a reason, without its numbers.
+#[must_use]
+pub fn kind_of(reason: StopReason) -> &'static str {
+    match reason {
+        StopReason::Starting => "starting",
+        StopReason::SonarStale { .. } => "sonar stale",
+        StopReason::SonarInvalid { .. } => "sonar invalid",
+        StopReason::TooNear { .. } => "too near",
+        StopReason::MinDistance { .. } => "minimum distance",
+        StopReason::ContactTime { .. } => "contact time",
+        StopReason::ObstacleTooFast => "obstacle too fast",
+        StopReason::Clearance { .. } => "clearance",
+        StopReason::OdometryStale => "odometry stale",
+        StopReason::OdometryInvalid => "odometry invalid",
+        StopReason::ClockWentBack => "clock went back",
+        StopReason::AdviceInvalid => "advice invalid",
+        StopReason::MotorsDisabled => "motors disabled",
+        StopReason::Stalled => "stall or bumper",
+        StopReason::EmergencyStop => "emergency stop",
+        StopReason::LinkLost => "link lost",
+        StopReason::Operator => "operator",
+    }
+}
+
+/// Milliradians in whole degrees, towards zero: the protocol has no finer turn rates.
+fn degrees(milliradians: i32) -> i32 {
+    (f64::from(milliradians) / 1000.0).to_degrees() as i32
+}

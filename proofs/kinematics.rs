@@ -1,0 +1,39 @@
+//! Chapter `kinematics`: the differential drive.
+
+#[cfg(not(kani))]
+use super::kani;
+use sidestep::kinematics::{DifferentialDrive, Twist, WheelRates};
+use sidestep_spec::kinematics as law;
+
+/// Limited wheels keep the limit and their directions, for any rates and any limit.
+//= kinematics.INV-3
+//= kinematics.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn wheels_are_limited() {
+    let (right, left, limit) = (kani::any(), kani::any(), kani::any());
+    if let Ok(limited) = (WheelRates { right, left }).limited(limit) {
+        assert!(law::wheels_within(limited.right, limited.left, limit));
+        assert!(law::limited_keeps_direction(right, limited.right));
+        assert!(law::limited_keeps_direction(left, limited.left));
+        kani::cover!(limited.right != right, "limited");
+        kani::cover!(limited.right == right && right > 1.0, "left alone");
+    }
+}
+
+/// No motion and no drive makes anything but finite rates, or an error.
+//= kinematics.INV-5
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn wheel_rates_are_finite() {
+    if let Ok(drive) = DifferentialDrive::new(kani::any(), kani::any()) {
+        let twist = Twist {
+            speed: kani::any(),
+            turn_rate: kani::any(),
+        };
+        if let Ok(rates) = drive.wheel_rates(twist) {
+            assert!(law::finite(rates.right, rates.left));
+            kani::cover!(rates.right > 10.0, "turning");
+        }
+    }
+}

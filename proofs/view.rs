@@ -1,0 +1,253 @@
+//! Chapter `view`: judging readings and remembering them.
+
+use super::avoid::{any_angle, any_length, any_sighting, any_speed, any_trend};
+#[cfg(not(kani))]
+use super::kani;
+use nalgebra::Vector2;
+use sidestep::avoid::ObstacleSpeed;
+use sidestep::config::Config;
+use sidestep::observation::{
+    BaseStatus, Observation, OdometrySample, SonarReading, SonarSample, classify,
+};
+use sidestep::preset;
+use sidestep::quantity::Instant;
+use sidestep::ring::{Placement, Ring};
+use sidestep::track::Obstacle;
+use sidestep::view::{GoalView, Memory, Pose, View};
+use sidestep_spec::view as promise;
+
+/// The Pioneer preset.
+pub fn pioneer() -> Config {
+    match Config::new(preset::PIONEER_3DX) {
+        Ok(config) => config,
+        Err(_) => unreachable!(),
+    }
+}
+
+/// One sonar that looks straight ahead from the robot's edge.
+pub fn one_sonar(config: &Config) -> Ring<1> {
+    let ahead = Placement {
+        x: 0.2,
+        y: 0.0,
+        heading: 0.0,
+    };
+    match Ring::new(&[ahead], config) {
+        Ok(ring) => ring,
+        Err(_) => unreachable!(),
+    }
+}
+
+/// Any bit pattern as a sonar sample.
+pub fn any_sample() -> SonarSample {
+    SonarSample {
+        range: kani::any(),
+        taken_at: Instant(kani::any()),
+    }
+}
+
+/// Any bit pattern as an observation of one sonar.
+pub fn any_observation() -> Observation<1> {
+    Observation {
+        now: Instant(kani::any()),
+        sonar: [if kani::any() {
+            Some(any_sample())
+        } else {
+            None
+        }],
+        odometry: if kani::any() {
+            Some(OdometrySample {
+                x: kani::any(),
+                y: kani::any(),
+                heading: kani::any(),
+                speed: kani::any(),
+                turn_rate: kani::any(),
+                taken_at: Instant(kani::any()),
+            })
+        } else {
+            None
+        },
+        sighting: if kani::any() {
+            Some(any_sighting())
+        } else {
+            None
+        },
+        base: BaseStatus {
+            motors_enabled: kani::any(),
+            stalled: kani::any(),
+            emergency_stop: kani::any(),
+        },
+    }
+}
+
+/// A reading is an echo or "no echo" only where the raw range is a number above zero, measured in
+/// time. Any bit pattern, any limits of range and age.
+//= view.INV-1
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn only_ranges_are_readings() {
+    let sample = any_sample();
+    let now = Instant(kani::any());
+    let (range_min, range_max) = (any_length(), any_length());
+    let age_max = kani::any();
+    let reading = classify(Some(sample), now, range_min, range_max, age_max);
+    let usable = matches!(reading, SonarReading::Echo(_) | SonarReading::NoEcho(_));
+    let in_time = now.since(sample.taken_at).is_some_and(|age| age <= age_max);
+    assert!(promise::unusable_is_refused(sample.range, in_time, usable));
+    assert!(!matches!(
+        classify(None, now, range_min, range_max, age_max),
+        SonarReading::Echo(_) | SonarReading::NoEcho(_)
+    ));
+    kani::cover!(matches!(reading, SonarReading::Echo(_)), "an echo");
+    kani::cover!(matches!(reading, SonarReading::TooNear), "a contact");
+    kani::cover!(matches!(reading, SonarReading::Invalid), "nonsense");
+}
+
+/// Any number of a range.
+fn any_between(from: f32, to: f32) -> f32 {
+    let value = kani::any();
+    kani::assume((from..=to).contains(&value));
+    value
+}
+
+/// Any point of the odometry frame.
+fn any_point() -> Vector2<f32> {
+    Vector2::new(any_between(-1e4, 1e4), any_between(-1e4, 1e4))
+}
+
+/// Any judged reading.
+fn any_reading() -> SonarReading {
+    match kani::any::<u8>() % 5 {
+        0 => SonarReading::Echo(any_length()),
+        1 => SonarReading::NoEcho(any_length()),
+        2 => SonarReading::TooNear,
+        3 => SonarReading::Stale,
+        _ => SonarReading::Invalid,
+    }
+}
+
+/// Any view that a robot with one sonar can have.
+pub fn any_view() -> View<1> {
+    let contact_range: i32 = super::shield::any_in(-4_000, 4_000);
+    View {
+        now: Instant(kani::any()),
+        pose: Pose {
+            position: any_point(),
+            heading: any_angle(),
+        },
+        speed: any_between(-10.0, 10.0),
+        goal: GoalView {
+            heading: any_angle(),
+            distance: any_between(0.0, 2e4),
+        },
+        sonar: [any_reading()],
+        range: [super::shield::any_in(0, 1_000_000)],
+        clearance: [super::shield::any_in(-1_000_000, 1_000_000)],
+        obstacle: if kani::any() {
+            Some(Obstacle {
+                distance: any_length(),
+                contact_range,
+                direction: any_angle(),
+                position: any_point(),
+                trend: any_trend(),
+                speed: ObstacleSpeed {
+                    value: any_speed(),
+                    saturated: kani::any(),
+                },
+                visible: kani::any(),
+            })
+        } else {
+            None
+        },
+        room: [any_length(), any_length()],
+        base: BaseStatus {
+            motors_enabled: kani::any(),
+            stalled: kani::any(),
+            emergency_stop: kani::any(),
+        },
+        guard: None,
+    }
+}
+
+fn observation(range: f32, now: u64) -> Observation<1> {
+    Observation {
+        now: Instant(now),
+        sonar: [Some(SonarSample {
+            range,
+            taken_at: Instant(now),
+        })],
+        odometry: Some(OdometrySample {
+            x: 0.0,
+            y: 0.0,
+            heading: 0.0,
+            speed: 0.0,
+            turn_rate: 0.0,
+            taken_at: Instant(now),
+        }),
+        sighting: None,
+        base: BaseStatus {
+            motors_enabled: true,
+            stalled: false,
+            emergency_stop: false,
+        },
+    }
+}
+
+/// An echo that is nearer counts at once; one reading that is farther, or is no echo, frees
+/// nothing. Any two ranges, 100 ms apart, Pioneer preset.
+//= view.INV-2
+//= view.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
+#[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
+pub fn echoes_are_held() {
+    let config = pioneer();
+    let ring = one_sonar(&config);
+    let goal = Vector2::new(5.0, 0.0);
+    let mut memory = Memory::default();
+    let (first, second): (f32, f32) = (kani::any(), kani::any());
+    kani::assume((0.1..4.9).contains(&first));
+    kani::assume((0.1..=5.5).contains(&second));
+    let before = memory.update(&observation(first, 1000), goal, &ring, &config);
+    let after = memory.update(&observation(second, 1100), goal, &ring, &config);
+    if let (Ok(before), Ok(after)) = (before, after) {
+        assert!(promise::nearer_counts(
+            after.range[0],
+            (second * 1000.0) as i32
+        ));
+        assert!(promise::not_freed_at_once(before.range[0], after.range[0]));
+        kani::cover!(after.range[0] < before.range[0], "nearer");
+        kani::cover!(second >= 5.0, "no echo");
+    }
+}
+
+/// Judging any observation twice neither panics nor overflows, whatever the bits.
+//= view.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
+#[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
+pub fn any_observation_is_judged() {
+    let config = pioneer();
+    let ring = one_sonar(&config);
+    let goal = Vector2::new(5.0, 0.0);
+    let mut memory = Memory::default();
+    let first = memory.update(&any_observation(), goal, &ring, &config);
+    let second = memory.update(&any_observation(), goal, &ring, &config);
+    if let Ok(view) = second {
+        assert!(promise::judged(
+            view.speed,
+            view.goal.distance,
+            view.obstacle.map(|obstacle| obstacle.distance.get())
+        ));
+        kani::cover!(view.obstacle.is_some(), "an obstacle");
+        kani::cover!(first.is_ok() && view.range[0] < 1000, "something near");
+    }
+    kani::cover!(second.is_err(), "no odometry");
+}

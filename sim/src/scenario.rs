@@ -1,0 +1,337 @@
+//! Named situations, ready to simulate, and seeded variations of them.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::error::{Error, require};
+use crate::eth;
+use crate::geometry::{Point, Pose, Vector, direction, heading_of};
+use crate::person::{COURTESY_GAP, Motion, Person};
+use crate::robot::{self, ArcosRobot};
+use crate::simulation::Simulation;
+use crate::sonar;
+use crate::world::World;
+
+/// The scenarios that need no data file.
+pub const NAMES: [&str; 5] = [
+    ENCOUNTERS[0].name,
+    ENCOUNTERS[1].name,
+    ENCOUNTERS[2].name,
+    ENCOUNTERS[3].name,
+    LAB,
+];
+
+/// Someone who walks straight on towards where the robot is going to be.
+struct Encounter {
+    name: &'static str,
+    /// What the person does.
+    description: &'static str,
+    /// Direction of walking (rad); the robot's is 0.
+    heading: f64,
+    /// Usual speed (m/s).
+    speed: f64,
+}
+
+/// S1 Fig. 12, and the fastest person S1 allows for.
+const ENCOUNTERS: [Encounter; 4] = [
+    Encounter {
+        name: "fig12-head-on",
+        description: "S1 Fig. 12: a person comes straight at the robot",
+        heading: PI,
+        speed: 0.4,
+    },
+    Encounter {
+        name: "fig12-crossing",
+        description: "S1 Fig. 12: a person crosses at 45° from ahead on the left",
+        heading: -0.75 * PI,
+        speed: 0.4,
+    },
+    Encounter {
+        name: "fig12-from-side",
+        description: "S1 Fig. 12: a person crosses at 90° from the left",
+        heading: -FRAC_PI_2,
+        speed: 0.4,
+    },
+    Encounter {
+        name: "head-on-80",
+        description: "a person comes straight at the robot as fast as S1 allows for",
+        heading: PI,
+        speed: 0.8,
+    },
+];
+
+const LAB: &str = "lab";
+
+/// The robot's speed on the way to its goal, for which the encounters are timed (m/s): S1 L294.
+pub const CRUISE: f64 = 0.2;
+
+/// When the robot, left alone, would meet the person of an encounter (s).
+const MEETING: f64 = 7.5;
+
+/// A random encounter begins with at least this much room between hull and person (m).
+const INITIAL_CLEARANCE: f64 = 0.6;
+
+/// What can be chosen of every scenario.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knobs {
+    /// Seed of all noise and faults.
+    pub seed: u64,
+    /// Speed of the people, in [0, 5], or that of the scenario (m/s). Recorded people keep theirs.
+    pub person_speed: Option<f64>,
+    /// Whether people walk round a robot that stands still, which is what S1 assumes of them
+    /// (readings ER-S1-22). Recorded people never do.
+    pub courteous: bool,
+    /// Standard deviation of the sonars relative to the range, in [0, 1].
+    pub sonar_noise: f64,
+    /// Faults of every sonar.
+    pub sonar_faults: sonar::Faults,
+}
+
+impl Default for Knobs {
+    /// Seed 0, people as the scenario has them and courteous, ordinary noise, no faults.
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            person_speed: None,
+            courteous: true,
+            sonar_noise: sonar::Parameters::default().noise,
+            sonar_faults: sonar::Faults::default(),
+        }
+    }
+}
+
+/// A situation: a world, a robot, and what it is to do there.
+#[derive(Clone)]
+pub struct Scenario {
+    /// Its name.
+    pub name: &'static str,
+    /// What happens, in a sentence.
+    pub description: String,
+    /// Where it happens.
+    pub world: World,
+    /// Where the robot starts.
+    pub start: Pose,
+    /// Where it is to go (m).
+    pub goal: Point,
+    /// When to give up (ms).
+    pub time_limit_ms: u64,
+    /// The robot.
+    pub robot: robot::Parameters,
+    /// Faults of every sonar.
+    pub sonar_faults: sonar::Faults,
+    /// Seed of all noise and faults.
+    pub seed: u64,
+}
+
+impl Scenario {
+    /// The scenario called `name`, one of [`NAMES`].
+    pub fn named(name: &str, knobs: &Knobs) -> Result<Self, Error> {
+        if name == LAB {
+            return lab(knobs);
+        }
+        match ENCOUNTERS.iter().find(|encounter| encounter.name == name) {
+            Some(encounter) => encounter.scenario(knobs),
+            None => Err(Error::UnknownScenario {
+                name: name.to_owned(),
+                known: &NAMES,
+            }),
+        }
+    }
+
+    /// The robot crosses a pavement among the pedestrians recorded in the file at `path`, in the
+    /// form of the ETH data set's *hotel* sequence, from `start_time` (s) of the recording to its
+    /// end.
+    ///
+    /// Recorded people know of no robot: they walk faster than S1's bound and into a robot that
+    /// stands.
+    pub fn hotel(path: &Path, start_time: f64, knobs: &Knobs) -> Result<Self, Error> {
+        let mut world = World::new();
+        let mut end: f64 = 0.0;
+        for person in eth::read(path)? {
+            if let Motion::Track(samples) = person.motion() {
+                end = samples.last().map_or(end, |last| end.max(last.time));
+            }
+            world.add_person(person);
+        }
+        require(
+            "hotel.start_time",
+            start_time,
+            "within the recording (s)",
+            |t| (0.0..end).contains(&t),
+        )?;
+        Ok(Self {
+            name: "hotel",
+            description: format!(
+                "ETH hotel: across a pavement among recorded pedestrians, from {start_time} s"
+            ),
+            world: world.starting_at(start_time)?,
+            start: Pose::new(-2.5, -3.0, 0.0),
+            goal: Point::new(3.8, -3.0),
+            time_limit_ms: ((end - start_time) * 1000.0).round() as u64,
+            robot: robot_with(knobs),
+            sonar_faults: knobs.sonar_faults,
+            seed: knobs.seed,
+        })
+    }
+
+    /// The same situation happening otherwise, as `seed` has it; all noise follows from `seed` too.
+    ///
+    /// - Someone who walks straight on comes from about the same direction (±20°), at a speed up to
+    ///   `speed_limit` in (0, 5] (m/s), and aims within 0.5 m of where the robot would be by then.
+    ///   Nobody starts right beside the robot.
+    /// - Someone who walks from waypoint to waypoint does so at another such speed and after
+    ///   another delay, on patrol beginning at any of the waypoints.
+    /// - Recorded people stay as they were recorded.
+    pub fn randomised(mut self, seed: u64, speed_limit: f64) -> Result<Self, Error> {
+        require("scenario.speed_limit", speed_limit, "> 0, <= 5 m/s", |v| {
+            v > 0.0 && v <= 5.0
+        })?;
+        self.seed = seed;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        // Streams 0 and up belong to the sonars.
+        rng.set_stream(u64::MAX);
+        let ahead = self.goal - self.start.position;
+        let course = direction(heading_of(&ahead));
+        let keep = self.robot.base.radius + INITIAL_CLEARANCE;
+        for person in self.world.people_mut() {
+            let motion = match person.motion().clone() {
+                Motion::Line { heading, .. } => {
+                    let speed = speed_limit * rng.random_range(0.25..=1.0);
+                    let heading = heading + rng.random_range(-20.0..=20.0_f64).to_radians();
+                    let meeting: f64 = rng.random_range(4.0..=10.0);
+                    let miss =
+                        Vector::new(rng.random_range(-0.5..=0.5), rng.random_range(-0.5..=0.5));
+                    let met = self.start.position + course * (CRUISE * meeting) + miss;
+                    let walk = direction(heading);
+                    let mut start = met - walk * (speed * meeting);
+                    // Walking backwards leads away from the robot sooner or later.
+                    while (start - self.start.position).norm() < keep + person.radius() {
+                        start -= walk * 0.1;
+                    }
+                    Motion::Line {
+                        start,
+                        heading,
+                        speed,
+                        delay: 0.0,
+                    }
+                }
+                Motion::Path {
+                    mut start,
+                    mut waypoints,
+                    patrol,
+                    ..
+                } => {
+                    if patrol && !waypoints.is_empty() {
+                        let first = rng.random_range(0..waypoints.len() as u32) as usize;
+                        start = waypoints[first];
+                        waypoints.rotate_left(first + 1);
+                    }
+                    Motion::Path {
+                        start,
+                        waypoints,
+                        speed: speed_limit * rng.random_range(0.25..=1.0),
+                        delay: rng.random_range(0.0..=5.0),
+                        patrol,
+                    }
+                }
+                track @ Motion::Track(_) => track,
+            };
+            *person = person.clone().with_motion(motion)?;
+        }
+        let time = self.world.time();
+        self.world = self.world.starting_at(time)?;
+        Ok(self)
+    }
+
+    /// The situation at its beginning.
+    pub fn simulate(&self) -> Result<Simulation, Error> {
+        let mut robot = ArcosRobot::new(self.robot.clone(), self.start, self.seed)?;
+        robot.ring_mut().set_faults(self.sonar_faults)?;
+        Ok(Simulation::new(self.world.clone(), robot))
+    }
+}
+
+impl Encounter {
+    /// A robot that drives 4 m straight ahead over an open floor, and someone who is aimed at where
+    /// it would be after [`MEETING`].
+    fn scenario(&self, knobs: &Knobs) -> Result<Scenario, Error> {
+        let speed = knobs.person_speed.unwrap_or(self.speed);
+        let meeting = Point::new(CRUISE * MEETING, 0.0);
+        let mut world = World::new();
+        world.add_person(someone(
+            Motion::Line {
+                start: meeting - direction(self.heading) * (speed * MEETING),
+                heading: self.heading,
+                speed,
+                delay: 0.0,
+            },
+            knobs,
+        )?);
+        Ok(Scenario {
+            name: self.name,
+            description: format!("{}, {speed} m/s", self.description),
+            world,
+            start: Pose::new(0.0, 0.0, 0.0),
+            goal: Point::new(4.0, 0.0),
+            time_limit_ms: 90_000,
+            robot: robot_with(knobs),
+            sonar_faults: knobs.sonar_faults,
+            seed: knobs.seed,
+        })
+    }
+}
+
+/// S1's laboratory, 5 by 4 m: a chair on the straight way to the goal, a table behind it, and
+/// someone who walks up and down between them. There is a way past the chair that leaves a P3-DX
+/// 0.45 m on both sides.
+fn lab(knobs: &Knobs) -> Result<Scenario, Error> {
+    let mut world = World::new();
+    world.add_room(Point::new(0.0, 0.0), Point::new(5.0, 4.0))?;
+    let chair = Pose::new(2.0, 1.9, 20_f64.to_radians());
+    world.add_box(chair, 0.45, 0.45)?;
+    let table = Pose::new(3.6, 3.6, 0.0);
+    world.add_box(table, 1.2, 0.6)?;
+    let speed = knobs.person_speed.unwrap_or(0.4);
+    let start = Point::new(3.0, 2.7);
+    world.add_person(someone(
+        Motion::Path {
+            start,
+            waypoints: vec![Point::new(3.0, 0.5), start],
+            speed,
+            delay: 5.0,
+            patrol: true,
+        },
+        knobs,
+    )?);
+    Ok(Scenario {
+        name: LAB,
+        description: format!(
+            "S1's laboratory: round a chair and past someone who walks up and down, {speed} m/s"
+        ),
+        world,
+        start: Pose::new(0.8, 2.0, 0.0),
+        goal: Point::new(4.2, 1.8),
+        time_limit_ms: 120_000,
+        robot: robot_with(knobs),
+        sonar_faults: knobs.sonar_faults,
+        seed: knobs.seed,
+    })
+}
+
+fn someone(motion: Motion, knobs: &Knobs) -> Result<Person, Error> {
+    let person = Person::new(motion)?;
+    if knobs.courteous {
+        person.courteous(COURTESY_GAP)
+    } else {
+        Ok(person)
+    }
+}
+
+fn robot_with(knobs: &Knobs) -> robot::Parameters {
+    let mut robot = robot::Parameters::default();
+    robot.sonar.noise = knobs.sonar_noise;
+    robot
+}

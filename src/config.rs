@@ -1,0 +1,188 @@
+//! The configuration: one table of parameters, checked once.
+//!
+//! [`Parameters`] are plain numbers that anyone may write; a [`Config`] is parameters that were
+//! found good, and is the only thing the rest of the crate accepts. [`FIELDS`] describes every
+//! parameter, so that a program can read, explain and refuse them by name without a second list.
+
+use crate::quantity::{OutOfRange, in_range};
+
+/// What is known of one parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field {
+    /// Name, as in [`Parameters`].
+    pub name: &'static str,
+    /// Unit of the value: `m`, `m/s`, `m/s^2`, `s`, `rad`, `rad/s`, `rad/s^2`, `1/s` or
+    /// `samples` (whole numbers).
+    pub unit: &'static str,
+    /// Least allowed value.
+    pub min: f32,
+    /// Greatest allowed value.
+    pub max: f32,
+    /// What it means and where it comes from.
+    pub meaning: &'static str,
+}
+
+macro_rules! parameters {
+    ($($name:ident: $unit:literal, $min:literal, $max:literal, $meaning:literal;)+) => {
+        /// Every parameter of law, view and shield, in SI units.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Parameters {
+            $(#[doc = $meaning] #[doc = ""] #[doc = concat!("Unit ", $unit, ", ", $min, " to ", $max, ".")]
+            pub $name: f32,)+
+        }
+
+        /// The description of every parameter, in the order of [`Parameters::values`].
+        pub const FIELDS: [Field; [$(stringify!($name)),+].len()] = [
+            $(Field { name: stringify!($name), unit: $unit, min: $min, max: $max, meaning: $meaning },)+
+        ];
+
+        impl Parameters {
+            /// The values in the order of [`FIELDS`].
+            #[must_use]
+            pub fn values(&self) -> [f32; FIELDS.len()] {
+                [$(self.$name),+]
+            }
+
+            /// Parameters from values in the order of [`FIELDS`].
+            #[must_use]
+            pub fn from_values(values: [f32; FIELDS.len()]) -> Self {
+                let [$($name),+] = values;
+                Self { $($name),+ }
+            }
+        }
+    };
+}
+
+parameters! {
+    safe_distance: "m", 0.1, 10.0,
+        "Distance of an obstacle below which the maneuver begins: d_safe, S1 Table 1.";
+    near_distance: "m", 0.05, 10.0,
+        "Distance of a receding obstacle above which the robot turns back to its goal: d_n, S1 Table 1.";
+    min_distance: "m", 0.03, 5.0,
+        "Reading of a forward sonar at or under which the robot stops: min_distance, S1 Table 1.";
+    turn_distance: "m", 0.01, 5.0,
+        "Distance at which the maneuver turns by a quarter turn: k_theta, S1 E5. Twice the least distance at most, so that no turn exceeds half a turn.";
+    speed_max: "m/s", 0.02, 2.0,
+        "Greatest speed: v_max, S1 E7.";
+    cruise_speed: "m/s", 0.01, 2.0,
+        "Speed towards the goal when nothing is near, S1 section 4.";
+    obstacle_speed_max: "m/s", 0.0, 3.0,
+        "The promise holds for obstacles no faster than this: v_o,max, S1 E3.";
+    stop_time: "s", 0.0, 5.0,
+        "The robot stops when contact is possible within this time: T, S1 Table 1.";
+    view_half_angle: "rad", 0.05, 1.5,
+        "Half the angle ahead in which an echo is an obstacle to the law: theta_Cam, S1 Table 1.";
+    corridor_margin: "m", 0.0, 1.0,
+        "Clearance wanted on either side of the path ahead; echoes inside it are obstacles to the law.";
+    hold_time: "s", 0.1, 10.0,
+        "How long an obstacle that is no longer seen is still believed to be there.";
+    confirm_samples: "samples", 1.0, 20.0,
+        "Readings in a row that it takes to believe that an obstacle recedes or has gone.";
+    heading_gain: "1/s", 0.1, 5.0,
+        "Turn rate per radian of heading error.";
+    turn_rate_max: "rad/s", 0.05, 4.0,
+        "Greatest turn rate.";
+    alignment: "rad", 0.01, 1.0,
+        "Heading error under which the robot counts as turned to its goal.";
+    goal_tolerance: "m", 0.02, 2.0,
+        "Distance from the goal at which it is reached.";
+    robot_radius: "m", 0.05, 1.0,
+        "Radius of a circle round the centre of rotation that contains the robot.";
+    acceleration: "m/s^2", 0.05, 5.0,
+        "The base accelerates no harder than this.";
+    braking: "m/s^2", 0.1, 10.0,
+        "The base brakes at least as hard as this, on this floor, with this load.";
+    turn_acceleration: "rad/s^2", 0.1, 20.0,
+        "The turn rate changes no faster than this.";
+    reaction_time: "s", 0.02, 2.0,
+        "From one command taking effect to the next one taking effect, at the longest.";
+    resume_clearance: "m", 0.0, 1.0,
+        "Clearance beyond what a stop demands before the robot moves again.";
+    resume_samples: "samples", 1.0, 50.0,
+        "Clear ticks in a row before the robot moves again after a stop.";
+    sonar_age_max: "s", 0.02, 5.0,
+        "A sonar reading older than this is stale.";
+    odometry_age_max: "s", 0.02, 5.0,
+        "Odometry older than this is stale.";
+    sonar_half_angle: "rad", 0.02, 0.8,
+        "Half the opening angle of a sonar's cone.";
+    sonar_range_min: "m", 0.0, 0.5,
+        "Readings below this are a contact: blanking distance, S1 section 3.";
+    sonar_range_max: "m", 0.5, 20.0,
+        "Readings from here on mean that no echo came back.";
+}
+
+/// Parameters that were checked. See [`Config::new`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    parameters: Parameters,
+}
+
+impl core::ops::Deref for Config {
+    type Target = Parameters;
+
+    fn deref(&self) -> &Parameters {
+        &self.parameters
+    }
+}
+
+impl Config {
+    /// Checks every parameter against its range and against the others.
+    ///
+    /// # Errors
+    /// The first parameter that is out of range; where the range depends on another parameter
+    /// (d_min < d_n < d_safe, for example) the range given is the one that follows from it.
+    pub fn new(parameters: Parameters) -> Result<Self, OutOfRange> {
+        for (field, value) in FIELDS.iter().zip(parameters.values()) {
+            let in_range = in_range(field.name, value, field.min, field.max, field.unit)?;
+            // A count is whole: the range of a count starts at 1, so the cast is exact.
+            if field.unit == "samples" && in_range != (in_range as u16) as f32 {
+                return Err(OutOfRange {
+                    field: field.name,
+                    value,
+                    min: field.min,
+                    max: field.max,
+                    unit: "samples (whole)",
+                });
+            }
+        }
+        let p = parameters;
+        // Δθ = (π/2)·k/d must stay within half a turn wherever the shield lets the robot move.
+        in_range(
+            "turn_distance",
+            p.turn_distance,
+            0.01,
+            2.0 * p.min_distance,
+            "m",
+        )?;
+        in_range(
+            "near_distance",
+            p.near_distance,
+            p.min_distance,
+            p.safe_distance,
+            "m",
+        )?;
+        in_range(
+            "safe_distance",
+            p.safe_distance,
+            p.near_distance,
+            p.sonar_range_max,
+            "m",
+        )?;
+        in_range("cruise_speed", p.cruise_speed, 0.01, p.speed_max, "m/s")?;
+        in_range(
+            "min_distance",
+            p.min_distance,
+            p.sonar_range_min,
+            p.near_distance,
+            "m",
+        )?;
+        Ok(Self { parameters })
+    }
+
+    /// The parameters.
+    #[must_use]
+    pub const fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+}

@@ -1,0 +1,270 @@
+//! Following the one obstacle that the law avoids, over time and out of sight.
+
+use crate::avoid::{ObstacleSpeed, Trend, obstacle_speed};
+use crate::config::Config;
+use crate::math;
+use crate::observation::{Sighting, SonarReading};
+use crate::quantity::{Angle, Instant, Length, Speed};
+use crate::ring::{Ring, Sonar};
+use crate::shield::milliseconds;
+use crate::view::Pose;
+use core::f32::consts::FRAC_PI_2;
+use nalgebra::Vector2;
+
+/// The obstacle the law avoids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Distance d_o from the sonar's face.
+    pub distance: Length,
+    /// Distance d_o at which it would touch the robot, in millimetres.
+    pub contact_range: i32,
+    /// Its direction in the odometry frame, seen from the robot.
+    pub direction: Angle,
+    /// Its place in the odometry frame.
+    pub position: Vector2<f32>,
+    /// How its distance changes.
+    pub trend: Trend,
+    /// Upper estimate of its speed.
+    pub speed: ObstacleSpeed,
+    /// It was seen in this tick, not only remembered.
+    pub visible: bool,
+}
+
+/// How many distances of the tracked obstacle are kept.
+const HISTORY: usize = 8;
+/// A trend is taken over at least this time, in ms: over less, noise outweighs motion.
+const TREND_TIME: u64 = 400;
+/// Slower changes of distance than this count as none, in m/s. One per cent of range noise at
+/// 1.2 m over the trend time is 0.04 m/s.
+const TREND_RATE: f32 = 0.1;
+/// Echoes within this distance of a tracked place, in metres, belong to it.
+const GATE: f32 = 0.4;
+
+/// The obstacle that is followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Track {
+    position: Vector2<f32>,
+    distance: Length,
+    sonar: usize,
+    seen: Instant,
+    /// Ticks in a row in which a sonar saw past its place.
+    absent: u32,
+    /// Latest distances seen, newest first.
+    history: [Option<(Instant, f32)>; HISTORY],
+}
+
+/// One echo, placed.
+#[derive(Clone, Copy)]
+struct Echo {
+    sonar: usize,
+    distance: Length,
+    position: Vector2<f32>,
+}
+
+impl Track {
+    fn new(echo: Echo, now: Instant) -> Self {
+        let mut history = [None; HISTORY];
+        history[0] = Some((now, echo.distance.get()));
+        Self {
+            position: echo.position,
+            distance: echo.distance,
+            sonar: echo.sonar,
+            seen: now,
+            absent: 0,
+            history,
+        }
+    }
+
+    fn seen_at(&self, echo: Echo, now: Instant) -> Self {
+        let mut track = Self::new(echo, now);
+        // A second look in the same millisecond replaces the first.
+        let older = usize::from(self.seen == now);
+        for i in 1..HISTORY {
+            track.history[i] = self.history.get(i - 1 + older).copied().flatten();
+        }
+        track
+    }
+
+    /// The same obstacle, not seen this time: its distance follows from where it was.
+    fn unseen<const N: usize>(&self, seen_past: bool, pose: &Pose, ring: &Ring<N>) -> Self {
+        let offset = math::norm(self.position - pose.position);
+        let inset = math::norm(ring.sonars()[self.sonar].position);
+        Self {
+            absent: if seen_past {
+                self.absent.saturating_add(1)
+            } else {
+                0
+            },
+            distance: Length::metres((offset - inset).max(0.0)).unwrap_or(self.distance),
+            ..*self
+        }
+    }
+
+    /// Change of the distance in m/s, negative when closing, once there is enough history.
+    fn rate(&self) -> Option<f32> {
+        let (newest, distance) = self.history[0]?;
+        for entry in self.history.iter().skip(1) {
+            let (time, before) = (*entry)?;
+            let elapsed = newest.since(time)?;
+            if elapsed >= TREND_TIME {
+                return Some((distance - before) / (elapsed as f32 / 1000.0));
+            }
+        }
+        None
+    }
+
+    /// What the law is told of the obstacle.
+    pub(crate) fn obstacle<const N: usize>(
+        &self,
+        now: Instant,
+        pose: &Pose,
+        speed: f32,
+        sighting: Option<&Sighting>,
+        ring: &Ring<N>,
+        config: &Config,
+    ) -> Obstacle {
+        let offset = self.position - pose.position;
+        let direction = Angle::radians(math::atan2(offset.y, offset.x)).unwrap_or(Angle::ZERO);
+        let bearing = direction.minus(pose.heading);
+        let rate = self.rate();
+        let visible = self.seen == now;
+        let trend = match rate {
+            Some(rate) if visible && rate > TREND_RATE => Trend::Receding,
+            Some(rate) if visible && rate < -TREND_RATE => Trend::Closing,
+            Some(_) if visible => Trend::Steady,
+            _ => Trend::Unknown,
+        };
+        let speed_max = Speed::metres_per_second(config.obstacle_speed_max).unwrap_or(Speed::MAX);
+        let estimate = seen_by_camera(sighting, now, speed, speed_max, config)
+            .unwrap_or_else(|| closing_speed(rate, speed * math::cos(bearing.get()), speed_max));
+        Obstacle {
+            distance: self.distance,
+            contact_range: ring.sonars()[self.sonar].contact_range,
+            direction,
+            position: self.position,
+            trend,
+            speed: estimate,
+            visible,
+        }
+    }
+}
+
+/// S1 E3 from a camera, if it saw something within the hold time.
+fn seen_by_camera(
+    sighting: Option<&Sighting>,
+    now: Instant,
+    speed: f32,
+    speed_max: Speed,
+    config: &Config,
+) -> Option<ObstacleSpeed> {
+    let sighting = sighting?;
+    let fresh = now
+        .since(sighting.taken_at)
+        .is_some_and(|age| age <= milliseconds(config.hold_time));
+    let robot_speed = Speed::metres_per_second(speed.abs()).ok()?;
+    // A camera that looks ahead sees across the direction of travel: θ_R is 90° to it.
+    let heading = Angle::radians(FRAC_PI_2).ok()?;
+    fresh.then(|| obstacle_speed(sighting, robot_speed, heading, speed_max))
+}
+
+/// The sonars' counterpart of S1 E3: how fast the obstacle itself comes nearer, from the change
+/// of its distance (m/s, negative when closing) and the robot's own share `own` of the closing.
+/// Not known yet is v_o,max; v_o,max or faster is v_o,max, saturated.
+fn closing_speed(rate: Option<f32>, own: f32, speed_max: Speed) -> ObstacleSpeed {
+    let Some(rate) = rate else {
+        return ObstacleSpeed {
+            value: speed_max,
+            saturated: false,
+        };
+    };
+    match Speed::metres_per_second((-rate - own).max(0.0)) {
+        Ok(value) if value < speed_max => ObstacleSpeed {
+            value,
+            saturated: false,
+        },
+        _ => ObstacleSpeed {
+            value: speed_max,
+            saturated: true,
+        },
+    }
+}
+
+/// Follows the obstacle that the law avoids through one tick: the nearest echo in the angle of
+/// view or in the corridor ahead, kept in sight by any sonar, held in memory when it is not.
+pub(crate) fn follow<const N: usize>(
+    track: &mut Option<Track>,
+    sonar: &[SonarReading; N],
+    pose: &Pose,
+    now: Instant,
+    ring: &Ring<N>,
+    config: &Config,
+) {
+    let mut nearest: Option<Echo> = None;
+    let mut matched: Option<(Echo, f32)> = None;
+    let mut seen_past = false;
+    for i in 0..N {
+        let SonarReading::Echo(distance) = sonar[i] else {
+            continue;
+        };
+        let at = &ring.sonars()[i];
+        let point = at.position + at.axis * distance.get();
+        let echo = Echo {
+            sonar: i,
+            distance,
+            position: pose.to_world(point),
+        };
+        if ahead(point, config) && nearest.is_none_or(|other| distance < other.distance) {
+            nearest = Some(echo);
+        }
+        if let Some(track) = track {
+            let offset = math::norm(echo.position - track.position);
+            if offset <= GATE && matched.is_none_or(|(_, least)| offset < least) {
+                matched = Some((echo, offset));
+            }
+            seen_past |= sees_past(track, at, distance, pose, config);
+        }
+    }
+
+    let fresh = nearest.map(|echo| Track::new(echo, now));
+    *track = match (*track, matched) {
+        (None, _) => fresh,
+        (Some(old), Some((echo, _))) => match nearest {
+            // Something else is clearly nearer.
+            Some(other) if other.distance.get() + GATE < echo.distance.get() => fresh,
+            _ => Some(old.seen_at(echo, now)),
+        },
+        (Some(old), None) => {
+            let old = old.unseen(seen_past, pose, ring);
+            let gone = old.absent >= config.confirm_samples as u32;
+            let expired = now
+                .since(old.seen)
+                .is_none_or(|age| age > milliseconds(config.hold_time));
+            let overtaken = nearest.is_some_and(|echo| echo.distance < old.distance);
+            if gone || expired || overtaken {
+                fresh
+            } else {
+                Some(old)
+            }
+        }
+    };
+}
+
+/// A point of the robot's frame lies in the angle of view or in the corridor that the robot is
+/// about to sweep.
+fn ahead(point: Vector2<f32>, config: &Config) -> bool {
+    let (sin, cos) = (
+        math::sin(config.view_half_angle),
+        math::cos(config.view_half_angle),
+    );
+    let side = point.y.abs();
+    point.x > 0.0
+        && (side * cos <= point.x * sin || side <= config.robot_radius + config.corridor_margin)
+}
+
+/// A sonar whose cone covers the place of the track measured something clearly behind it.
+fn sees_past(track: &Track, sonar: &Sonar, distance: Length, pose: &Pose, config: &Config) -> bool {
+    let offset = pose.to_robot(track.position) - sonar.position;
+    let range = math::norm(offset);
+    let covered = offset.dot(&sonar.axis) >= range * math::cos(config.sonar_half_angle);
+    covered && distance.get() > range + GATE
+}

@@ -1,0 +1,550 @@
+//! Worked cases, per equation: `lit` is the formula as printed, `rec` the reading chosen.
+//!
+//! The f64 reference of `sidestep-spec` must meet each case's tolerance. Where the core computes
+//! the same thing, the f32 core must too, at max(tol, 2e-5·|expected|); angles are compared on
+//! the circle, at 2e-5 of the largest angle of the case. `SIDESTEP_GOLDEN` names another file.
+
+use serde_json::Value;
+use sidestep::avoid::{self, Mode, QuarterTurns, Side, Situation, Trend};
+use sidestep::config::Config;
+use sidestep::kinematics::{DifferentialDrive, WheelRates, velocity};
+use sidestep::observation::Sighting;
+use sidestep::preset;
+use sidestep::quantity::{Angle, Instant, Length, Speed};
+use sidestep_spec as spec;
+use std::collections::BTreeMap;
+
+/// Named results; numbers, words and truths alike.
+type Outputs = Vec<(&'static str, Value)>;
+
+/// What a case must come to: by the reference, and by the core where it computes this.
+struct Computed {
+    reference: Outputs,
+    core: Option<Outputs>,
+}
+
+struct Input<'a>(&'a Value);
+
+impl Input<'_> {
+    fn number(&self, name: &str) -> f64 {
+        match &self.0[name] {
+            Value::Null if self.0.get(name).is_some() => f64::NAN,
+            Value::String(word) => word
+                .parse()
+                .unwrap_or_else(|_| panic!("no number {name} in {}", self.0)),
+            value => value
+                .as_f64()
+                .unwrap_or_else(|| panic!("no number {name} in {}", self.0)),
+        }
+    }
+
+    fn truth(&self, name: &str) -> bool {
+        self.0[name]
+            .as_bool()
+            .unwrap_or_else(|| panic!("no truth {name} in {}", self.0))
+    }
+
+    fn word(&self, name: &str) -> &str {
+        self.0[name]
+            .as_str()
+            .unwrap_or_else(|| panic!("no word {name} in {}", self.0))
+    }
+
+    /// A length or speed given in centimetres, in metres.
+    fn metres(&self, name: &str) -> f32 {
+        (self.number(name) / 100.0) as f32
+    }
+
+    fn length(&self, name: &str) -> Length {
+        Length::metres(self.metres(name)).expect("a length")
+    }
+
+    fn speed(&self, name: &str) -> Speed {
+        Speed::metres_per_second(self.metres(name)).expect("a speed")
+    }
+
+    fn radians(&self, name: &str) -> f32 {
+        self.number(name).to_radians() as f32
+    }
+
+    fn angle(&self, radians: f32) -> Angle {
+        Angle::radians(radians).expect("an angle")
+    }
+}
+
+fn number(value: f64) -> Value {
+    // JSON has no infinity; a NaN becomes null, which is how a case says "undefined".
+    if value == f64::INFINITY {
+        Value::from("inf")
+    } else {
+        Value::from(value)
+    }
+}
+
+fn centimetres(speed: Speed) -> Value {
+    number(f64::from(speed.get()) * 100.0)
+}
+
+fn radians(angle: f32) -> Value {
+    number(f64::from(angle))
+}
+
+fn sighting(i: &Input) -> Sighting {
+    Sighting {
+        displacement: i.number("dp_px") as f32,
+        scale: i.metres("s_cm_per_px"),
+        interval: i.number("t_s") as f32,
+        direction: i.radians("theta_o_deg"),
+        taken_at: Instant(0),
+    }
+}
+
+/// What the reference and the core make of a case; `None` if its equation is not here yet.
+fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
+    let computed = match (equation, variant) {
+        ("S1.E1", "lit") => {
+            let (heading, camera) = (i.number("theta_R_deg"), i.number("theta_cam_deg"));
+            let core = avoid::obstacle_robot_angle(
+                i.angle(heading.to_radians() as f32),
+                i.angle(camera.to_radians() as f32),
+            );
+            Computed {
+                reference: vec![(
+                    "theta_OR_deg",
+                    number(spec::avoid::e1_printed(heading, camera)),
+                )],
+                core: Some(vec![(
+                    "theta_OR_deg",
+                    number(f64::from(core.get()).to_degrees()),
+                )]),
+            }
+        }
+        ("S1.E2", "lit") => Computed {
+            reference: vec![(
+                "v_o_cos_theta_o_cm_s",
+                number(spec::avoid::e2_printed(
+                    i.number("dp_px"),
+                    i.number("s_cm_per_px"),
+                    i.number("t_s"),
+                    i.number("v_R_cm_s"),
+                    i.number("theta_R_deg"),
+                )),
+            )],
+            core: None,
+        },
+        ("S1.E3", variant) => {
+            let terms = [
+                "dp_px",
+                "s_cm_per_px",
+                "t_s",
+                "theta_o_deg",
+                "v_R_cm_s",
+                "theta_R_deg",
+                "v_o_max_cm_s",
+            ]
+            .map(|name| i.number(name));
+            let [dp, s, t, direction, v, heading, max] = terms;
+            let core = avoid::obstacle_speed(
+                &sighting(i),
+                i.speed("v_R_cm_s"),
+                i.angle(i.radians("theta_R_deg")),
+                i.speed("v_o_max_cm_s"),
+            );
+            let reference = if variant == "lit" {
+                spec::avoid::e3_printed(dp, s, t, direction, v, heading, max)
+            } else {
+                spec::avoid::e3(dp, s, t, direction, v, heading, max).0
+            };
+            // Where E3 as printed and as read agree, the core is judged by the printed cases too.
+            let same = reference == spec::avoid::e3(dp, s, t, direction, v, heading, max).0;
+            Computed {
+                reference: vec![("v_o_cm_s", number(reference))],
+                core: same.then(|| vec![("v_o_cm_s", centimetres(core.value))]),
+            }
+        }
+        ("S1.E4", "lit") => {
+            let terms = [
+                "d_o_cm",
+                "theta_R_deg",
+                "theta_cam_deg",
+                "v_R_cm_s",
+                "v_o_cm_s",
+                "theta_o_deg",
+                "T_s",
+            ]
+            .map(|name| i.number(name));
+            let [d, heading, camera, v, vo, direction, stop_time] = terms;
+            let (t, stop) =
+                spec::avoid::e4_printed(d, heading, camera, v, vo, direction, stop_time);
+            Computed {
+                reference: vec![("t_s", number(t)), ("stop", Value::from(stop))],
+                core: None,
+            }
+        }
+        ("S1.E4", "rec") => {
+            let (t, stop) = spec::avoid::e4_bound(
+                i.number("d_o_cm"),
+                i.number("R_contact_cm"),
+                i.number("v_R_cm_s"),
+                i.number("v_o_cm_s"),
+                i.number("T_s"),
+            );
+            let core = avoid::contact_time_bound(
+                i.length("d_o_cm"),
+                i.length("R_contact_cm"),
+                i.speed("v_R_cm_s"),
+                i.speed("v_o_cm_s"),
+            );
+            let core_stop = core.is_some_and(|t| f64::from(t) <= i.number("T_s"));
+            Computed {
+                reference: vec![("t_lb_s", number(t)), ("stop", Value::from(stop))],
+                core: Some(vec![
+                    ("t_lb_s", number(core.map_or(f64::INFINITY, f64::from))),
+                    ("stop", Value::from(core_stop)),
+                ]),
+            }
+        }
+        ("S1.E5", "lit") => {
+            let (turn, heading) = spec::avoid::e5_printed(
+                i.number("d_o_cm"),
+                i.number("k_theta_cm"),
+                i.number("theta_R_rad"),
+                i.word("side") == "right_of_obs",
+            );
+            Computed {
+                reference: vec![
+                    ("dtheta_rad", number(turn)),
+                    ("theta_m_rad", number(heading)),
+                ],
+                core: None,
+            }
+        }
+        ("S1.E5", "rec") => {
+            let bearing = i.number("obstacle_bearing_deg");
+            let reference_heading = i.number("theta_ref_rad");
+            let (turn, sign, heading) = spec::avoid::e5(
+                i.number("d_o_cm"),
+                i.number("k_theta_cm"),
+                reference_heading,
+                bearing,
+            );
+            let core_turn = QuarterTurns::at_distance(i.length("d_o_cm"), i.length("k_theta_cm"));
+            let side = Side::away_from(
+                i.angle(bearing.to_radians() as f32),
+                Length::ZERO,
+                Length::ZERO,
+            );
+            let core_heading =
+                avoid::maneuver_heading(i.angle(reference_heading as f32), side, core_turn);
+            Computed {
+                reference: vec![
+                    ("dtheta_rad", number(turn)),
+                    ("turn_sign", number(sign)),
+                    ("theta_m_rad", number(heading)),
+                ],
+                core: Some(vec![
+                    ("dtheta_rad", radians(core_turn.angle().get())),
+                    (
+                        "turn_sign",
+                        number(if side == Side::Left { 1.0 } else { -1.0 }),
+                    ),
+                    ("theta_m_rad", radians(core_heading.get())),
+                ]),
+            }
+        }
+        ("S1.E6", "lit") => {
+            let reference = i.number("theta_ref_rad");
+            let core = avoid::maneuver_heading(
+                i.angle(reference as f32),
+                Side::Left,
+                QuarterTurns::of_angle(0.0).expect("no turn"),
+            );
+            Computed {
+                reference: vec![("theta_m_rad", number(spec::avoid::e6(reference)))],
+                core: Some(vec![("theta_m_rad", radians(core.get()))]),
+            }
+        }
+        ("S1.E7", variant) => {
+            let (turn, speed_max) = (i.number("dtheta_rad"), i.number("v_max_cm_s"));
+            let reference = if variant == "lit" {
+                spec::avoid::e7_printed(turn, speed_max)
+            } else {
+                spec::avoid::e7(turn, speed_max)
+            };
+            let core = avoid::maneuver_speed(
+                i.speed("v_max_cm_s"),
+                QuarterTurns::of_angle(turn as f32).expect("a turn"),
+            );
+            let same = (reference - spec::avoid::e7(turn, speed_max)).abs() < 1e-12;
+            Computed {
+                reference: vec![("v_R_cm_s", number(reference))],
+                core: same.then(|| vec![("v_R_cm_s", centimetres(core))]),
+            }
+        }
+        ("S1.E5+E7", "lit") => {
+            let (d, k, speed_max) = (
+                i.number("d_o_cm"),
+                i.number("k_theta_cm"),
+                i.number("v_max_cm_s"),
+            );
+            let turn = spec::avoid::e5_printed(d, k, 0.0, true).0;
+            let core_turn = QuarterTurns::at_distance(i.length("d_o_cm"), i.length("k_theta_cm"));
+            let core_speed = avoid::maneuver_speed(i.speed("v_max_cm_s"), core_turn);
+            Computed {
+                reference: vec![
+                    ("dtheta_rad", number(turn)),
+                    ("v_R_cm_s", number(spec::avoid::e7_printed(turn, speed_max))),
+                ],
+                // Beyond half a turn the printed formula reverses; the reading does not.
+                core: (turn <= std::f64::consts::PI).then(|| {
+                    vec![
+                        ("dtheta_rad", radians(core_turn.angle().get())),
+                        ("v_R_cm_s", centimetres(core_speed)),
+                    ]
+                }),
+            }
+        }
+        ("S1.A1", "rec") => {
+            let (goal, customer) = (i.truth("goal_pose_reached"), i.truth("customer_confirmed"));
+            let core = avoid::arrival(
+                i.length("front_cm"),
+                i.length("min_distance_cm"),
+                goal,
+                customer,
+            );
+            let reference = spec::avoid::a1(
+                i.number("front_cm"),
+                i.number("min_distance_cm"),
+                goal,
+                customer,
+            );
+            Computed {
+                reference: vec![("result", Value::from(reference))],
+                core: Some(vec![("result", Value::from(format!("{core:?}")))]),
+            }
+        }
+        ("S1.A3", "rec") => {
+            let orientation = i.number("global_orientation_deg");
+            let (image, folded, approaching) = spec::avoid::a3(orientation);
+            let (core_folded, core_approaching) =
+                avoid::image_direction(orientation.to_radians() as f32).expect("an orientation");
+            Computed {
+                reference: vec![
+                    ("theta_o_image_deg", number(image)),
+                    ("theta_o_folded_deg", number(folded)),
+                    ("approaching", Value::from(approaching)),
+                ],
+                core: Some(vec![
+                    (
+                        "theta_o_folded_deg",
+                        number(f64::from(core_folded).to_degrees()),
+                    ),
+                    ("approaching", Value::from(core_approaching)),
+                ]),
+            }
+        }
+        ("S1.A4", "rec") => {
+            let (distance, time) = (i.number("d_o_cm"), i.number("ttc_s"));
+            let fresh = i.truth("sensors_fresh");
+            let (mode, trend) = (i.word("mode"), i.word("trend"));
+            let config = Config::new(preset::SRIKANDI_II_2012).expect("the preset");
+            let situation = Situation {
+                distance: Some(i.length("d_o_cm")),
+                trend: match trend {
+                    "closing" => Trend::Closing,
+                    "receding" => Trend::Receding,
+                    "steady" => Trend::Steady,
+                    _ => Trend::Unknown,
+                },
+                guard: !fresh
+                    || i.metres("d_o_cm") <= config.min_distance
+                    || time as f32 <= config.stop_time,
+                corridor_free: true,
+                aligned: false,
+                at_goal: false,
+            };
+            let from = match mode {
+                "Cruise" => Mode::Cruise,
+                "Maneuver" => Mode::Maneuver,
+                "Reorient" => Mode::Reorient,
+                "Stop" => Mode::Stop,
+                other => panic!("unknown mode {other}"),
+            };
+            let core = avoid::next_mode(from, &situation, &config);
+            Computed {
+                reference: vec![(
+                    "next",
+                    Value::from(spec::avoid::a4(mode, distance, trend, time, fresh)),
+                )],
+                core: Some(vec![("next", Value::from(format!("{core:?}")))]),
+            }
+        }
+        ("S2.E1-3", "lit") => {
+            let (v, heading, turn_rate) = (
+                i.number("v_R_m_s"),
+                i.number("theta_R_deg"),
+                i.number("omega_R_rad_s"),
+            );
+            let (x, y, turn) = spec::kinematics::e1_e3(v, heading, turn_rate);
+            let core = velocity(v as f32, i.angle(heading.to_radians() as f32));
+            Computed {
+                reference: vec![
+                    ("xdot", number(x)),
+                    ("ydot", number(y)),
+                    ("thetadot", number(turn)),
+                ],
+                core: Some(vec![
+                    ("xdot", radians(core.x)),
+                    ("ydot", radians(core.y)),
+                    ("thetadot", number(turn_rate)),
+                ]),
+            }
+        }
+        ("S2.E5", variant) => {
+            let (radius, right, left) = (i.number("R_m"), i.number("omega_r"), i.number("omega_l"));
+            let base = if variant == "rec" {
+                i.number("L_m")
+            } else {
+                1.0
+            };
+            let core = DifferentialDrive::new(radius as f32, base as f32)
+                .and_then(|drive| {
+                    drive.twist(WheelRates {
+                        right: right as f32,
+                        left: left as f32,
+                    })
+                })
+                .expect("a drive");
+            let yaw = spec::kinematics::yaw(radius, base, right, left);
+            let mut reference =
+                vec![("v_R_m_s", number(spec::kinematics::e5(radius, right, left)))];
+            let mut core = vec![
+                ("v_R_m_s", radians(core.speed)),
+                ("omega_R_rad_s", radians(core.turn_rate)),
+            ];
+            if variant == "rec" {
+                reference.push(("omega_R_rad_s", number(yaw)));
+            } else {
+                core.pop();
+            }
+            Computed {
+                reference,
+                core: Some(core),
+            }
+        }
+        _ => return None,
+    };
+    Some(computed)
+}
+
+/// A result equals what is expected, numbers within `tolerance`; angles on the circle.
+fn agrees(name: &str, found: &Value, expected: &Value, tolerance: f64) -> bool {
+    match (found.as_f64(), expected.as_f64()) {
+        (Some(found), Some(expected)) => {
+            let circle = if name.ends_with("_rad") {
+                std::f64::consts::TAU
+            } else if name.ends_with("_deg") {
+                360.0
+            } else {
+                f64::INFINITY
+            };
+            let difference = (found - expected).abs();
+            difference <= tolerance || (circle - difference).abs() <= tolerance
+        }
+        _ => found == expected,
+    }
+}
+
+/// The outputs that differ from what is expected; every output the core gives is looked at, and
+/// every expected output must be given by the reference.
+fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
+    let expected = case["out"].as_object().expect("outputs");
+    let tol = case["tol"].as_f64().unwrap_or(0.0);
+    let largest_angle = outputs
+        .iter()
+        .filter(|(name, _)| name.ends_with("_rad"))
+        .filter_map(|(_, value)| value.as_f64())
+        .fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
+    let mut wrong = Vec::new();
+    for (name, value) in outputs {
+        let Some(expected) = expected.get(*name) else {
+            wrong.push(format!("{name} is not expected"));
+            continue;
+        };
+        let scale = if name.ends_with("_rad") {
+            largest_angle
+        } else {
+            expected.as_f64().unwrap_or(0.0).abs()
+        };
+        // f32 keeps seven digits of an angle as large as half a turn; 360° − x has lost them.
+        let scale = if name.ends_with("_deg") {
+            scale.max(180.0)
+        } else {
+            scale
+        };
+        let tolerance = if core { tol.max(2e-5 * scale) } else { tol };
+        if !agrees(name, value, expected, tolerance) {
+            wrong.push(format!(
+                "{name}: {value}, expected {expected} ± {tolerance:e}"
+            ));
+        }
+    }
+    for name in expected.keys() {
+        if !core && !outputs.iter().any(|(given, _)| given == name) {
+            wrong.push(format!("{name} is not computed"));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn golden() {
+    let path = std::env::var("SIDESTEP_GOLDEN")
+        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden.json").to_owned());
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let file: Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let cases = file["cases"].as_array().expect("cases");
+    let (mut passed, mut by_core) = (0, 0);
+    let mut failed = Vec::new();
+    let mut missing: BTreeMap<String, usize> = BTreeMap::new();
+    for case in cases {
+        let (equation, variant) = (case["eq"].as_str(), case["var"].as_str());
+        let (equation, variant) = (equation.expect("eq"), variant.expect("var"));
+        let computed = std::panic::catch_unwind(|| compute(equation, variant, &Input(&case["in"])));
+        let computed = match computed {
+            Ok(Some(computed)) => computed,
+            Ok(None) => {
+                *missing.entry(format!("{equation} {variant}")).or_default() += 1;
+                continue;
+            }
+            Err(_) => {
+                failed.push(format!("{}: its input cannot be read", case["id"]));
+                continue;
+            }
+        };
+        let mut wrong = differences(case, &computed.reference, false);
+        if let Some(core) = &computed.core {
+            by_core += 1;
+            wrong.extend(
+                differences(case, core, true)
+                    .into_iter()
+                    .map(|line| format!("core {line}")),
+            );
+        }
+        if wrong.is_empty() {
+            passed += 1;
+        } else {
+            failed.push(format!("{}: {}", case["id"], wrong.join("; ")));
+        }
+    }
+    for line in &failed {
+        println!("{line}");
+    }
+    for (equation, count) in &missing {
+        println!("not implemented yet: {equation}, {count} cases");
+    }
+    println!("{by_core} of the cases were put to the core as well");
+    println!("golden: {passed} passed, {} failed", failed.len());
+    assert!(passed > 0, "no case of an implemented equation in {path}");
+    assert!(failed.is_empty(), "{} golden cases failed", failed.len());
+}
