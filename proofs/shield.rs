@@ -53,6 +53,9 @@ pub fn guard_asks_enough() {
     kani::cover!(speed == 0, "rest");
 }
 
+/// No configuration asks for more clearance than this, in mm.
+const MOST: i32 = 2_000_000;
+
 /// The guard's arithmetic does not overflow for any configuration and any speed it may have.
 //= shield.INV-2
 #[cfg_attr(kani, kani::proof)]
@@ -69,8 +72,8 @@ pub fn guard_does_not_overflow() {
     });
     let speed = any_in(0, limits.speed_max());
     let required = limits.required_clearance(speed);
-    assert!(required >= 0);
-    kani::cover!(required > 1_000_000, "a kilometre and more");
+    assert!((0..=MOST).contains(&required));
+    kani::cover!(required > 500_000, "half a kilometre");
     kani::cover!(required < 100, "a decimetre");
 }
 
@@ -133,9 +136,9 @@ pub fn braking_stays_safe() {
     kani::cover!(left == 0, "just in time");
 }
 
-/// Any clearance may be asked for: what `speed_is_admitted` shows does not rest on the formula.
+/// Any clearance may be asked for, up to what `guard_does_not_overflow` shows.
 pub fn any_clearance(_limits: &Limits, _speed: i32) -> i32 {
-    kani::any()
+    any_in(0, MOST)
 }
 
 /// Contact may be judged in any way.
@@ -278,47 +281,71 @@ pub fn any_law_is_shielded() {
     }
 }
 
-/// Turn rates keep their limit and their slew, for any configuration and any advice.
+/// Turn rates keep their limit, gain no more than the base can, and end before contact, for any
+/// configuration of the turn, any advice and any clearance.
 //= shield.INV-1
 //= shield.INV-6
+//= shield.INV-12
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn turn_rate_is_limited() {
-    let limits = limits_with(|p| {
-        p.turn_rate_max = kani::any();
-        p.turn_acceleration = kani::any();
-        p.reaction_time = kani::any();
-    });
+    let limits = limits_with(|p| p.turn_rate_max = kani::any());
     let last = any_in(-limits.turn_rate_max(), limits.turn_rate_max());
     let elapsed = any_in(0, limits.reaction_time());
-    let turn_rate = limits.admissible_turn_rate(last, kani::any(), elapsed);
+    let clearance = kani::any();
+    let turn_rate = limits.admissible_turn_rate(last, kani::any(), elapsed, clearance);
     assert!(promise::within_limits(
         0,
         turn_rate,
         0,
         limits.turn_rate_max()
     ));
+    assert!(promise::turn_slew_kept(
+        last,
+        turn_rate,
+        limits.turn_acceleration(),
+        elapsed
+    ));
+    assert!(promise::turn_ends_before_contact(
+        turn_rate,
+        limits.turn_acceleration(),
+        limits.reaction_time(),
+        limits.obstacle_speed(),
+        clearance
+    ));
     kani::cover!(turn_rate < last, "clockwise");
     kani::cover!(turn_rate == limits.turn_rate_max(), "as fast as it may");
 }
 
-/// SH.4: if contact is possible at any time within the stop time, the guard stops; and what stops
-/// also stops nearer and faster. For every configuration, in integers: the f32 quotient t_lb is
-/// for reporting only, the decision needs no division, and a product of two bounded integers is
-/// exact.
-//= shield.INV-7
+/// SH.4: if contact is possible at any time within the stop time, the guard stops. In integers:
+/// the f32 quotient t_lb is for reporting only, the decision needs no division, and a product of
+/// two bounded integers is exact. Stop time of the presets, any distance, speed and time.
 //= shield.INV-8
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
-pub fn contact_time_is_sound_and_monotone() {
-    let limits = limits_with(|p| p.stop_time = kani::any());
+pub fn contact_time_is_sound() {
+    let limits = pioneer();
     let distance = any_in(0, 1_000_000);
     let closing = any_in(0, 13_000);
     let stops = limits.contact_within_stop_time(distance, closing);
     let time = any_in(0, limits.stop_time());
     assert!(promise::sound(distance, closing, time, stops));
+    kani::cover!(stops && distance > 0, "stops at a distance");
+    kani::cover!(!stops && closing > 0, "goes on");
+}
+
+/// SH.4: what stops also stops nearer and faster. Stop time of the presets.
+//= shield.INV-7
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn stop_set_is_monotone() {
+    let limits = pioneer();
+    let distance = any_in(0, 1_000_000);
+    let closing = any_in(0, 13_000);
+    let stops = limits.contact_within_stop_time(distance, closing);
     let nearer = any_in(0, distance);
     let faster = any_in(closing, 13_000);
     assert!(promise::monotone(

@@ -394,6 +394,10 @@ struct Latch {
     side: Side,
 }
 
+/// An obstacle that comes nearer no faster than this, in m/s, stands still: sonar noise over the
+/// time of a trend looks like this much.
+const STILL: f32 = 0.15;
+
 /// S1's avoidance law: M1 with E5, E6 and E7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Avoid {
@@ -424,28 +428,29 @@ impl Avoid {
 
     /// What the mode machine needs to know of a view.
     fn situation<const N: usize>(&self, view: &View<N>) -> Situation {
-        let trend = match &view.obstacle {
-            // Not yet confirmed: neither closing nor gone.
-            Some(obstacle)
-                if obstacle.trend == Trend::Receding
-                    && self.receding < self.config.confirm_samples as u32 =>
-            {
-                Trend::Steady
-            }
-            Some(obstacle) => obstacle.trend,
-            None => Trend::Unknown,
-        };
         let heading_error = view.goal.heading.minus(view.pose.heading);
-        Situation {
-            distance: view.obstacle.map(|obstacle| obstacle.distance),
-            trend,
+        let mut situation = Situation {
+            distance: None,
+            trend: Trend::Unknown,
             guard: view.guard.is_some(),
-            corridor_free: view
-                .obstacle
-                .is_none_or(|obstacle| !self.in_corridor(&obstacle, view, view.goal.heading)),
+            corridor_free: true,
             aligned: heading_error.get().abs() <= self.config.alignment,
             at_goal: view.goal.distance <= self.config.goal_tolerance,
+        };
+        if let Some(obstacle) = &view.obstacle {
+            situation.corridor_free = !self.in_corridor(obstacle, view, view.goal.heading);
+            // What stands still beside the way to the goal is no obstacle to it.
+            if !situation.corridor_free || obstacle.speed.value.get() > STILL {
+                situation.distance = Some(obstacle.distance);
+                // Receding that is not confirmed yet is neither closing nor gone.
+                let confirmed = self.receding >= self.config.confirm_samples as u32;
+                situation.trend = match obstacle.trend {
+                    Trend::Receding if !confirmed => Trend::Steady,
+                    trend => trend,
+                };
+            }
         }
+        situation
     }
 
     /// The obstacle is ahead in direction `heading`, within the corridor the robot would sweep.

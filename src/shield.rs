@@ -235,6 +235,12 @@ impl Limits {
         self.turn_rate_max
     }
 
+    /// The turn acceleration α in mrad/s².
+    #[must_use]
+    pub const fn turn_acceleration(&self) -> i32 {
+        self.turn_acceleration
+    }
+
     /// Greatest obstacle speed V for which the promise holds, mm/s.
     #[must_use]
     pub const fn obstacle_speed(&self) -> i32 {
@@ -297,13 +303,34 @@ impl Limits {
         distance as i64 * 1000 <= self.stop_time as i64 * closing as i64
     }
 
-    /// SH.5: the turn rate nearest to `advised` (mrad/s) within the greatest turn rate, and no
-    /// farther from `last` than the base can change it in `elapsed` ms (0 to ε).
+    /// SH.5: the turn rate nearest to `advised` (mrad/s) within the greatest turn rate, within
+    /// what SH.6 allows for the clearance (mm), and no farther beyond `last` than the base can
+    /// gain in `elapsed` ms (0 to ε). Turning slower is always allowed.
+    ///
+    /// SH.6: the turn, too, ends before contact: after reacting for ε the robot stops turning in
+    /// ω/α, and the obstacle has not come nearer than the clearance by then: V(ε + ω/α) ≤ d.
     #[must_use]
-    pub fn admissible_turn_rate(&self, last: i32, advised: i32, elapsed: i32) -> i32 {
-        let wish = advised.clamp(-self.turn_rate_max, self.turn_rate_max);
+    pub fn admissible_turn_rate(
+        &self,
+        last: i32,
+        advised: i32,
+        elapsed: i32,
+        clearance: i32,
+    ) -> i32 {
+        // ω ≤ α·(d − V·ε)/V. Clearances beyond 10 m allow for no more than 10 m do.
+        let spare =
+            clearance.clamp(0, 10_000) - divide_up(self.obstacle_speed * self.reaction_time, 1000);
+        let limit = if spare <= 0 {
+            0
+        } else if self.obstacle_speed == 0 {
+            self.turn_rate_max
+        } else {
+            (self.turn_acceleration * spare / self.obstacle_speed).min(self.turn_rate_max)
+        };
         let step = self.turn_acceleration * elapsed / 1000;
-        wish.clamp(last - step, last + step)
+        advised
+            .clamp(last.min(0) - step, last.max(0) + step)
+            .clamp(-limit, limit)
     }
 
     /// SH.5: the greatest speed, in mm/s, of those from 0 to `advised` that the base reaches from
@@ -529,7 +556,9 @@ impl Shield {
                 return Some(StopReason::ContactTime { distance, closing });
             }
         }
-        let required = self.limits.required_clearance(0) + margin;
+        // No margin here: what is admitted just above this is a creep, and something that stands
+        // still this close must not hold the robot for ever.
+        let required = self.limits.required_clearance(0);
         for (sonar, &clearance) in view.clearance.iter().enumerate() {
             if clearance < required {
                 return Some(StopReason::Clearance {
@@ -562,7 +591,9 @@ impl Shield {
         self.last_tick = Some(view.now);
         let limits = &self.limits;
         let advised = (advice.turn_rate * 1000.0) as i32;
-        let turn_rate = limits.admissible_turn_rate(self.last.turn_rate, advised, elapsed);
+        let room = Room::new(view);
+        let turn_rate =
+            limits.admissible_turn_rate(self.last.turn_rate, advised, elapsed, room.clearance);
         match self.stop {
             Some(reason) => self.verdict(
                 Command {
@@ -577,7 +608,7 @@ impl Shield {
                     (advice.speed * 1000.0) as i32,
                     elapsed,
                     self.speed_bound(view),
-                    Room::new(view),
+                    room,
                 );
                 let speed = admission.speed;
                 self.verdict(Command { speed, turn_rate }, admission.limit)

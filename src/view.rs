@@ -99,17 +99,32 @@ impl Held {
     }
 }
 
+/// What one sonar is believed to have in front of it, in millimetres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bound {
+    /// Least range, as it was when it was measured.
+    pub range: i32,
+    /// Least range by now, if robot and obstacle have closed as fast as they may since.
+    pub reachable: i32,
+}
+
+/// The memory of one sonar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EchoMemory {
+    held: Option<Held>,
+}
+
 /// What is remembered from tick to tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory<const N: usize> {
-    held: [Option<Held>; N],
+    sonar: [EchoMemory; N],
     track: Option<Track>,
 }
 
 impl<const N: usize> Default for Memory<N> {
     fn default() -> Self {
         Self {
-            held: [None; N],
+            sonar: [EchoMemory::default(); N],
             track: None,
         }
     }
@@ -142,7 +157,7 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             );
             let taken_at = sample.map_or(now, |sample| sample.taken_at);
-            let bound = hold(&mut self.held[i], sonar[i], taken_at, now, config);
+            let bound = self.sonar[i].update(sonar[i], taken_at, now, config);
             range[i] = bound.range;
             clearance[i] = bound.reachable - ring.sonars()[i].contact_range;
         }
@@ -185,62 +200,61 @@ fn length(metres: f32) -> Length {
     Length::metres(metres).unwrap_or(Length::ZERO)
 }
 
-/// What one sonar is believed to have in front of it, in millimetres.
-struct Bound {
-    /// Least range, as it was when it was measured.
-    range: i32,
-    /// Least range by now, if robot and obstacle have closed as fast as they may since.
-    reachable: i32,
-}
+/// Echoes of one thing scatter by less than this, in millimetres.
+const SCATTER: i32 = 100;
 
-/// Holds on to an echo until it is seen to be gone (view.INV-2, view.INV-3).
-fn hold(
-    held: &mut Option<Held>,
-    reading: SonarReading,
-    taken_at: Instant,
-    now: Instant,
-    config: &Config,
-) -> Bound {
-    let hold_time = milliseconds(config.hold_time);
-    let measured = match reading {
-        SonarReading::Echo(range) => Some(millimetres_down(range.get())),
-        SonarReading::TooNear => Some(0),
-        SonarReading::NoEcho(_) | SonarReading::Stale | SonarReading::Invalid => None,
-    };
-    *held = match (*held, measured) {
-        // A nearer echo counts at once, a farther one only when it keeps coming.
-        (Some(mut old), Some(range)) if range > old.range => {
-            old.farther += 1;
-            let gone = old.farther >= config.confirm_samples as u32;
-            let expired = now.since(old.seen).is_none_or(|age| age > hold_time);
-            Some(if gone || expired {
-                Held::new(range, taken_at)
-            } else {
-                old
-            })
-        }
-        (_, Some(range)) => Some(Held::new(range, taken_at)),
-        // No echo is no proof: only time lets go.
-        (Some(old), None) if now.since(old.seen).is_some_and(|age| age <= hold_time) => {
-            Some(Held { farther: 0, ..old })
-        }
-        (_, None) => None,
-    };
-    let no_echo = millimetres_down(config.sonar_range_max);
-    match *held {
-        None => Bound {
-            range: no_echo,
-            reachable: no_echo,
-        },
-        Some(held) => {
-            // The age is at most the hold time or the greatest age of a reading, 10 s; anything
-            // else counts as that.
-            let age = now.since(held.seen).unwrap_or(10_000).min(10_000) as f32 / 1000.0;
-            let closed = millimetres_up((config.obstacle_speed_max + config.speed_max) * age);
-            Bound {
-                range: held.range,
-                reachable: held.range - closed,
+impl EchoMemory {
+    /// Takes in a reading and holds on to an echo until it is seen to be gone (view.INV-2,
+    /// view.INV-3).
+    pub fn update(
+        &mut self,
+        reading: SonarReading,
+        taken_at: Instant,
+        now: Instant,
+        config: &Config,
+    ) -> Bound {
+        let hold_time = milliseconds(config.hold_time);
+        // The way that robot and obstacle can close, or part, in a time. Ages are at most the hold
+        // time or the greatest age of a reading, 10 s; anything else counts as that.
+        let way = |from: Instant, to: Instant| {
+            let age = to.since(from).unwrap_or(10_000).min(10_000) as f32 / 1000.0;
+            millimetres_up((config.obstacle_speed_max + config.speed_max) * age)
+        };
+        let measured = match reading {
+            SonarReading::Echo(range) => Some(millimetres_down(range.get())),
+            SonarReading::TooNear => Some(0),
+            SonarReading::NoEcho(_) | SonarReading::Stale | SonarReading::Invalid => None,
+        };
+        self.held = match (self.held, measured) {
+            // An echo from farther away than the same thing can have gone is another thing's: it
+            // counts only when it keeps coming. Any other echo counts at once.
+            (Some(old), Some(range)) if range > old.range + way(old.seen, taken_at) + SCATTER => {
+                let farther = old.farther + 1;
+                let gone = farther >= config.confirm_samples as u32;
+                let expired = now.since(old.seen).is_none_or(|age| age > hold_time);
+                Some(if gone || expired {
+                    Held::new(range, taken_at)
+                } else {
+                    Held { farther, ..old }
+                })
             }
+            (_, Some(range)) => Some(Held::new(range, taken_at)),
+            // No echo is no proof: only time lets go.
+            (Some(old), None) if now.since(old.seen).is_some_and(|age| age <= hold_time) => {
+                Some(Held { farther: 0, ..old })
+            }
+            (_, None) => None,
+        };
+        let no_echo = millimetres_down(config.sonar_range_max);
+        match self.held {
+            None => Bound {
+                range: no_echo,
+                reachable: no_echo,
+            },
+            Some(held) => Bound {
+                range: held.range,
+                reachable: held.range - way(held.seen, now),
+            },
         }
     }
 }

@@ -132,7 +132,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     shield: guard_asks_enough, guard_does_not_overflow, admitted_motion_stays_safe,
         braking_stays_safe, speed_is_admitted, search_finds_the_greatest,
-        any_law_is_shielded, turn_rate_is_limited, contact_time_is_sound_and_monotone;
+        any_law_is_shielded, turn_rate_is_limited, contact_time_is_sound, stop_set_is_monotone;
     view: only_ranges_are_readings, echoes_are_held, any_observation_is_judged;
 };
 

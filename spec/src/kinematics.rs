@@ -40,7 +40,7 @@ pub fn wheels_within(right: f32, left: f32, limit: f32) -> bool {
 /// kinematics.INV-4: limiting keeps each wheel's direction and never makes it faster.
 #[must_use]
 pub fn limited_keeps_direction(before: f32, after: f32) -> bool {
-    after.abs() <= before.abs() && before * after >= 0.0
+    after.abs() <= before.abs() && (after == 0.0 || (after > 0.0) == (before > 0.0))
 }
 
 /// kinematics.INV-5: what comes out is finite.

@@ -50,7 +50,8 @@ pub fn asks_enough(
     reaction_time: i32,
     obstacle_speed: i32,
 ) -> bool {
-    let [v, a, b, e, o] = [speed, acceleration, braking, reaction_time, obstacle_speed].map(i64::from);
+    let [v, a, b, e, o] =
+        [speed, acceleration, braking, reaction_time, obstacle_speed].map(i64::from);
     let exact = 1_000_000 * (v * v + 2 * o * v) + (a + b) * (a * e * e + 2000 * e * (v + o));
     i64::from(required) * 2 * b * 1_000_000 >= exact
 }
@@ -116,4 +117,32 @@ pub fn fast_enough_or_braking(speed: i32, speed_bound: i32, speed_gain: i32) -> 
 #[must_use]
 pub fn greatest(found: i32, wish: i32, threshold: i32) -> bool {
     found == wish.min(threshold)
+}
+
+/// shield.INV-6, for turning: the magnitude grows by no more than the base can gain.
+#[must_use]
+pub fn turn_slew_kept(before: i32, after: i32, acceleration: i32, elapsed_ms: i32) -> bool {
+    let step = i64::from(acceleration) * i64::from(elapsed_ms) / 1000;
+    let (before, after) = (i64::from(before), i64::from(after));
+    (before.min(0) - step..=before.max(0) + step).contains(&after)
+}
+
+/// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ d, multiplied by 1000·α.
+#[must_use]
+pub fn turn_ends_before_contact(
+    turn_rate: i32,
+    acceleration: i32,
+    reaction_time: i32,
+    obstacle_speed: i32,
+    clearance: i32,
+) -> bool {
+    let [w, a, e, v, d] = [
+        turn_rate,
+        acceleration,
+        reaction_time,
+        obstacle_speed,
+        clearance,
+    ]
+    .map(i64::from);
+    w == 0 || v * (a * e + 1000 * w.abs()) <= 1000 * a * d
 }
