@@ -108,52 +108,41 @@ pub fn written_frame_is_accepted() {
     );
 }
 
-/// A stream of any 7 bytes: no frame in it is lost, and each byte is delivered, skipped or held.
+/// A frame with any number, argument and checksum behind a byte of noise: it is delivered exactly if
+/// it is one, and otherwise every byte is skipped or held as the beginning of another. Streams of
+/// which nothing is known are left to the property tests and the fuzzer: where the bytes held begin
+/// would be symbolic, and that in a buffer this long is more than a minute.
 //= arcos.INV-2
 //= arcos.INV-4
 //= arcos.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(17))]
 #[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(
-    kani,
-    kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
-)]
-#[cfg_attr(
-    kani,
-    kani::stub(sidestep_spec::arcos::checksum, crate::proofs::arcos::same_for_all)
-)]
-pub fn receiver_loses_nothing() {
-    let stream: [u8; 7] = kani::any();
+pub fn receiver_finds_the_frame() {
+    let [number, argument, high, low]: [u8; 4] = kani::any();
+    let stream = [0x00, 0xFA, 0xFB, 0x04, number, argument, high, low];
     let mut receiver = Receiver::new();
     let mut input = stream.as_slice();
-    // The shortest frame has 6 bytes: there is one at most.
     let delivered = match receiver.next_frame(&mut input) {
-        Some(frame) => frame.as_bytes().len(),
+        Some(frame) => {
+            assert_eq!(frame.as_bytes(), &stream[1..]);
+            frame.as_bytes().len()
+        }
         None => 0,
     };
     let skipped = usize::try_from(receiver.reception().skipped_bytes).unwrap_or(usize::MAX);
-    let taken = stream.len() - input.len();
-    assert!(delivered + skipped <= taken);
-    let held = taken - delivered - skipped;
+    assert!(input.is_empty() && delivered + skipped <= stream.len());
+    let held = stream.len() - delivered - skipped;
     assert!(law::all_bytes_are_accounted_for(
-        taken, delivered, skipped, held
+        stream.len(),
+        delivered,
+        skipped,
+        held
     ));
-    assert!(if delivered == 0 {
-        input.is_empty()
-    } else {
-        held == 0
-    });
-    let frames = [(skipped, delivered)];
-    let frames = frames.get(..delivered.min(1)).unwrap_or_default();
-    assert!(law::nothing_is_lost(&stream, frames, delivered + skipped));
-    kani::cover!(
-        delivered == 6 && skipped == 1,
-        "a frame behind another byte"
-    );
-    kani::cover!(delivered == 7, "a frame with an argument");
-    kani::cover!(receiver.reception().bad_checksums == 1, "a bad checksum");
-    kani::cover!(held == 7, "a frame that has only begun");
+    assert_eq!(delivered != 0, law::is_frame(&stream[1..]));
+    kani::cover!(delivered != 0, "delivered");
+    kani::cover!(held == 0 && delivered == 0, "all skipped");
+    kani::cover!(held == 4, "the beginning of another");
 }
 
 /// A frame with `N` bytes of arguments is encoded again byte for byte.

@@ -440,7 +440,8 @@ impl Avoid {
         if let Some(obstacle) = &view.obstacle {
             situation.corridor_free = !self.in_corridor(obstacle, view, view.goal.heading);
             // What stands still beside the way to the goal is no obstacle to it.
-            if !situation.corridor_free || obstacle.speed.value.get() > STILL {
+            let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
+            if !situation.corridor_free || moving {
                 situation.distance = Some(obstacle.distance);
                 // Receding that is not confirmed yet is neither closing nor gone.
                 let confirmed = self.receding >= self.config.confirm_samples as u32;

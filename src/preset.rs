@@ -49,6 +49,8 @@ pub const SRIKANDI_II_2011: Parameters = Parameters {
 /// 0.3 m/s² and to brake at 1 m/s²; ticks come with its information packets, every 100 ms. The radius
 /// reaches to the rear, 301 mm from the centre of rotation, so that the robot may turn in place.
 pub const PIONEER_3DX: Parameters = Parameters {
+    corridor_margin: 0.25,
+    resume_clearance: 0.05,
     robot_radius: 0.301,
     reaction_time: 0.22,
     ..SRIKANDI_II_2012

@@ -285,35 +285,35 @@ impl Encounter {
 }
 
 /// S1's laboratory, 5 by 4 m: a chair on the straight way to the goal, a table behind it, and
-/// someone who walks up and down between them. There is a way past the chair that leaves a P3-DX
+/// someone who crosses the room between them and out of the way. There is a way past the chair that leaves a P3-DX
 /// 0.45 m on both sides.
 fn lab(knobs: &Knobs) -> Result<Scenario, Error> {
     let mut world = World::new();
     world.add_room(Point::new(0.0, 0.0), Point::new(5.0, 4.0))?;
-    let chair = Pose::new(2.0, 1.9, 20_f64.to_radians());
+    let chair = Pose::new(2.4, 2.0, 20_f64.to_radians());
     world.add_box(chair, 0.45, 0.45)?;
     let table = Pose::new(3.6, 3.6, 0.0);
     world.add_box(table, 1.2, 0.6)?;
     let speed = knobs.person_speed.unwrap_or(0.4);
-    let start = Point::new(3.0, 2.7);
+    let start = Point::new(3.4, 0.4);
     world.add_person(someone(
         Motion::Path {
             start,
-            waypoints: vec![Point::new(3.0, 0.5), start],
+            waypoints: vec![Point::new(3.4, 2.9), Point::new(0.5, 3.6)],
             speed,
-            delay: 5.0,
-            patrol: true,
+            delay: 3.0,
+            patrol: false,
         },
         knobs,
     )?);
     Ok(Scenario {
         name: LAB,
         description: format!(
-            "S1's laboratory: round a chair and past someone who walks up and down, {speed} m/s"
+            "S1's laboratory: round a chair, with someone crossing the room at {speed} m/s"
         ),
         world,
-        start: Pose::new(0.8, 2.0, 0.0),
-        goal: Point::new(4.2, 1.8),
+        start: Pose::new(0.9, 2.0, 0.0),
+        goal: Point::new(4.2, 2.0),
         time_limit_ms: 120_000,
         robot: robot_with(knobs),
         sonar_faults: knobs.sonar_faults,

@@ -1,0 +1,11 @@
+//! What the fuzz targets do with their bytes.
+//!
+//! Each function takes any bytes and panics if a predicate of `sidestep-spec` is broken.
+//! `fuzz_targets/*.rs` hand them libFuzzer's bytes, `tests/fuzz_corpus.rs` the seed corpus and
+//! pseudo-random ones, so that what the fuzzer runs is also an ordinary test.
+
+pub mod avoid;
+pub mod bytes;
+pub mod controller;
+pub mod settings;
+pub mod watch;

@@ -1,0 +1,301 @@
+//! A controller with someone watching: every tick is judged by the predicates of the law book.
+
+use sidestep::config::Config;
+use sidestep::controller::{Controller, Decision};
+use sidestep::law::{Advice, Law};
+use sidestep::observation::{Observation, SonarReading};
+use sidestep::quantity::Instant;
+use sidestep::ring::Ring;
+use sidestep::shield::{Command, Limits, StopReason};
+use sidestep::view::View;
+use sidestep_spec::{avoid, shield, view as belief};
+use std::cell::Cell;
+
+/// A law that advises what it is told to, whatever it sees.
+#[derive(Clone, Debug)]
+pub struct Told {
+    /// What it will advise.
+    pub advice: Cell<Advice>,
+}
+
+impl Told {
+    /// A law that will advise this.
+    #[must_use]
+    pub const fn new(advice: Advice) -> Self {
+        Self {
+            advice: Cell::new(advice),
+        }
+    }
+}
+
+impl<const N: usize> Law<N> for Told {
+    fn advise(&mut self, _view: &View<N>) -> Advice {
+        self.advice.get()
+    }
+
+    fn mode(&self) -> &'static str {
+        "told"
+    }
+}
+
+/// A controller, and what a bystander remembers of it.
+#[derive(Clone, Debug)]
+pub struct Watched<L, const N: usize> {
+    /// The controller.
+    pub controller: Controller<L, N>,
+    config: Config,
+    ring: Ring<N>,
+    last: Command,
+    last_tick: Option<Instant>,
+    /// Ticks in a row since one in which something was wrong that does not depend on memory.
+    sound_ticks: u32,
+}
+
+/// A time of the configuration in whole milliseconds, as the view counts it.
+fn milliseconds(seconds: f32) -> u64 {
+    (seconds * 1000.0).round() as u64
+}
+
+/// Metres in millimetres, rounded up.
+fn up(metres: f32) -> i32 {
+    (metres * 1000.0).ceil() as i32
+}
+
+impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
+    /// A controller at rest that is watched from now on; the goal in metres.
+    ///
+    /// # Panics
+    /// If the goal is out of range.
+    #[must_use]
+    pub fn new(config: Config, ring: Ring<N>, law: L, goal: [f32; 2]) -> Self {
+        let controller = Controller::new(config, ring, law, goal.into()).expect("a goal in range");
+        Self {
+            controller,
+            config,
+            ring,
+            last: Command::REST,
+            last_tick: None,
+            sound_ticks: 0,
+        }
+    }
+
+    /// The last command.
+    #[must_use]
+    pub const fn last(&self) -> Command {
+        self.last
+    }
+
+    /// Whether every reading of an observation can be one, as far as that shows without knowing
+    /// what came before. Where this says no, the robot must be at rest.
+    fn can_be_trusted(&self, observation: &Observation<N>) -> bool {
+        let fresh = |taken_at: Instant, age_max: f32| {
+            let age = observation.now.since(taken_at);
+            age.is_some_and(|age| age <= milliseconds(age_max))
+        };
+        let ranges = observation.sonar.iter().all(|sample| {
+            sample.is_some_and(|sample| {
+                fresh(sample.taken_at, self.config.sonar_age_max)
+                    && sample.range.is_finite()
+                    && sample.range > 0.0
+                    && sample.range >= self.config.sonar_range_min
+            })
+        });
+        let pose = observation.odometry.is_some_and(|odometry| {
+            fresh(odometry.taken_at, self.config.odometry_age_max)
+                && odometry.x.is_finite()
+                && odometry.y.is_finite()
+                && odometry.heading.is_finite()
+                && odometry.speed.is_finite()
+                && odometry.turn_rate.is_finite()
+        });
+        let base = &observation.base;
+        let in_order = base.motors_enabled && !base.stalled && !base.emergency_stop;
+        let forward = self.last_tick.is_none_or(|last| observation.now >= last);
+        ranges && pose && in_order && forward
+    }
+
+    /// One tick; what the law advised in it, if it was asked.
+    ///
+    /// # Panics
+    /// If a predicate is broken.
+    pub fn tick(&mut self, observation: &Observation<N>) -> (Decision<N>, Option<Advice>) {
+        let trusted = self.can_be_trusted(observation);
+        let elapsed = self
+            .last_tick
+            .and_then(|last| observation.now.since(last))
+            .unwrap_or(0);
+        let mut law = self.controller.law().clone();
+        let decision = self.controller.tick(observation);
+        let advice = decision.view.as_ref().map(|view| law.advise(view));
+
+        let finite = advice
+            .is_none_or(|advice| advice.speed.is_finite() && advice.turn_rate.is_finite());
+        if trusted && finite {
+            self.sound_ticks += 1;
+        } else {
+            self.sound_ticks = 0;
+            assert!(decision.stop.is_some(), "no stop for {observation:?}");
+            assert!(shield::untrusted_rests(
+                decision.command.speed(),
+                decision.command.turn_rate()
+            ));
+        }
+        self.judge(&decision, elapsed);
+        if let Some(advice) = advice {
+            self.judge_reason(&decision, advice);
+        }
+        if let Some(view) = &decision.view {
+            self.judge_view(view, observation);
+            self.judge_motion(view, decision.command);
+        }
+        self.last = decision.command;
+        self.last_tick = Some(observation.now);
+        (decision, advice)
+    }
+
+    /// A stop from outside, as when the link is lost.
+    ///
+    /// # Panics
+    /// If a predicate is broken.
+    pub fn halt(&mut self, reason: StopReason, now: Instant) -> Decision<N> {
+        let decision = self.controller.halt(reason, now);
+        self.sound_ticks = 0;
+        assert_eq!(decision.stop, Some(reason));
+        assert!(shield::untrusted_rests(
+            decision.command.speed(),
+            decision.command.turn_rate()
+        ));
+        self.judge(&decision, 0);
+        self.last = decision.command;
+        // A time that goes back is noticed by the next tick, and until then it is not the time.
+        self.last_tick = Some(self.last_tick.map_or(now, |last| last.max(now)));
+        decision
+    }
+
+    fn limits(&self) -> &Limits {
+        self.controller.shield().limits()
+    }
+
+    /// What holds for every command, whatever was seen.
+    fn judge(&self, decision: &Decision<N>, elapsed: u64) {
+        let limits = self.limits();
+        let (speed, turn_rate) = (decision.command.speed(), decision.command.turn_rate());
+        assert!(shield::within_limits(
+            speed,
+            turn_rate,
+            limits.speed_max(),
+            limits.turn_rate_max()
+        ));
+        assert!(shield::stop_has_no_speed(decision.stop.is_some(), speed));
+        // After a fault clears, motion waits for its number of ticks.
+        let waiting = self.sound_ticks < self.config.resume_samples as u32;
+        assert!(shield::stop_has_no_speed(waiting, speed));
+        // However long the pause, the base gains no more than in one reaction time.
+        let elapsed = elapsed.min(limits.reaction_time() as u64) as i32;
+        assert!(shield::slew_kept(
+            self.last.speed(),
+            speed,
+            limits.acceleration(),
+            elapsed
+        ));
+        let rests = turn_rate == 0;
+        assert!(
+            rests
+                || shield::turn_slew_kept(
+                    self.last.turn_rate(),
+                    turn_rate,
+                    limits.turn_acceleration(),
+                    elapsed
+                )
+        );
+        assert!(!decision.mode.is_empty());
+        if let Some(reason) = decision.stop {
+            assert!(!reason.to_string().is_empty());
+        }
+        if let Some(limit) = decision.limit {
+            assert!(!limit.to_string().is_empty());
+        }
+    }
+
+    /// A robot that is slower than its law would have it says why.
+    fn judge_reason(&self, decision: &Decision<N>, advice: Advice) {
+        let advised = (advice.speed * 1000.0) as i32;
+        let slower = decision.command.speed() < advised;
+        let reasoned = decision.stop.is_some() || decision.limit.is_some();
+        assert!(
+            !slower || reasoned,
+            "advised {advised} mm/s, told {:?}, without a reason",
+            decision.command
+        );
+    }
+
+    /// What holds for a command that follows from a view.
+    fn judge_motion(&self, view: &View<N>, command: Command) {
+        let limits = self.limits();
+        let (speed, turn_rate) = (command.speed(), command.turn_rate());
+        let required = limits.required_clearance(speed);
+        for &clearance in &view.clearance {
+            assert!(shield::admitted(speed, required, clearance));
+            assert!(shield::turn_ends_before_contact(
+                turn_rate,
+                limits.turn_acceleration(),
+                limits.reaction_time(),
+                limits.obstacle_speed(),
+                clearance
+            ));
+        }
+        let speed_bound = up(view.speed.abs()).max(self.last.speed());
+        assert!(shield::fast_enough_or_braking(
+            speed,
+            speed_bound,
+            limits.speed_gain()
+        ));
+        if let Some(obstacle) = &view.obstacle {
+            let distance = (obstacle.distance.get() * 1000.0) as i32 - obstacle.contact_range;
+            let closing = speed + up(obstacle.speed.value.get());
+            assert!(shield::sound(
+                distance.max(0),
+                closing,
+                limits.stop_time(),
+                speed == 0
+            ));
+        }
+    }
+
+    /// What holds for everything that is believed.
+    fn judge_view(&self, view: &View<N>, observation: &Observation<N>) {
+        let obstacle = view.obstacle.as_ref();
+        assert!(belief::judged(
+            view.speed,
+            view.goal.distance,
+            obstacle.map(|obstacle| obstacle.distance.get())
+        ));
+        let finite = |vector: &nalgebra::Vector2<f32>| vector.iter().all(|x| x.is_finite());
+        assert!(finite(&view.pose.position) && avoid::angle_in_range(view.pose.heading.get()));
+        assert!(avoid::angle_in_range(view.goal.heading.get()));
+        if let Some(obstacle) = obstacle {
+            assert!(finite(&obstacle.position));
+            assert!(avoid::angle_in_range(obstacle.direction.get()));
+            assert!(avoid::obstacle_speed_in_range(
+                obstacle.speed.value.get(),
+                self.config.obstacle_speed_max
+            ));
+        }
+        for (i, reading) in view.sonar.iter().enumerate() {
+            let usable = matches!(reading, SonarReading::Echo(_) | SonarReading::NoEcho(_));
+            let sample = observation.sonar[i];
+            let in_time = sample.is_some_and(|sample| {
+                let age = observation.now.since(sample.taken_at);
+                age.is_some_and(|age| age <= milliseconds(self.config.sonar_age_max))
+            });
+            let range = sample.map_or(f32::NAN, |sample| sample.range);
+            assert!(belief::unusable_is_refused(range, in_time, usable));
+            if let SonarReading::Echo(measured) = reading {
+                let measured = (measured.get() * 1000.0) as i32;
+                assert!(belief::nearer_counts(view.range[i], measured));
+            }
+            let reachable = view.clearance[i] + self.ring.sonars()[i].contact_range;
+            assert!(belief::reachable_is_nearer(view.range[i], reachable));
+        }
+    }
+}
