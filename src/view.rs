@@ -157,7 +157,7 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             );
             let taken_at = sample.map_or(now, |sample| sample.taken_at);
-            let bound = self.sonar[i].update(sonar[i], taken_at, now, config);
+            let bound = self.sonar[i].update(measured(sonar[i]), taken_at, now, config);
             range[i] = bound.range;
             clearance[i] = bound.reachable - ring.sonars()[i].contact_range;
         }
@@ -204,11 +204,11 @@ fn length(metres: f32) -> Length {
 const SCATTER: i32 = 100;
 
 impl EchoMemory {
-    /// Takes in a reading and holds on to an echo until it is seen to be gone (view.INV-2,
-    /// view.INV-3).
+    /// Takes in a measured range (mm; none if no echo came back) and holds on to it until it is
+    /// seen to be gone (view.INV-2, view.INV-3).
     pub fn update(
         &mut self,
-        reading: SonarReading,
+        measured: Option<i32>,
         taken_at: Instant,
         now: Instant,
         config: &Config,
@@ -216,14 +216,10 @@ impl EchoMemory {
         let hold_time = milliseconds(config.hold_time);
         // The way that robot and obstacle can close, or part, in a time. Ages are at most the hold
         // time or the greatest age of a reading, 10 s; anything else counts as that.
+        let closing = millimetres_up(config.obstacle_speed_max + config.speed_max);
         let way = |from: Instant, to: Instant| {
-            let age = to.since(from).unwrap_or(10_000).min(10_000) as f32 / 1000.0;
-            millimetres_up((config.obstacle_speed_max + config.speed_max) * age)
-        };
-        let measured = match reading {
-            SonarReading::Echo(range) => Some(millimetres_down(range.get())),
-            SonarReading::TooNear => Some(0),
-            SonarReading::NoEcho(_) | SonarReading::Stale | SonarReading::Invalid => None,
+            let age = to.since(from).unwrap_or(10_000).min(10_000) as i32;
+            (closing * age + 999) / 1000
         };
         self.held = match (self.held, measured) {
             // An echo from farther away than the same thing can have gone is another thing's: it
@@ -256,6 +252,15 @@ impl EchoMemory {
                 reachable: held.range - way(held.seen, now),
             },
         }
+    }
+}
+
+/// The range of a judged reading in millimetres, rounded down; none if no echo came back.
+fn measured(reading: SonarReading) -> Option<i32> {
+    match reading {
+        SonarReading::Echo(range) => Some(millimetres_down(range.get())),
+        SonarReading::TooNear => Some(0),
+        SonarReading::NoEcho(_) | SonarReading::Stale | SonarReading::Invalid => None,
     }
 }
 

@@ -59,7 +59,16 @@ impl<'a> Bytes<'a> {
             0x80..=0xBF => f32::from(self.u16()) / 1000.0,
             0xC0..=0xDF => f32::from(self.u16() as i16) / 10.0,
             0xE0..=0xEF => {
-                let corners = [0.0, -0.0, 1.0, f32::NAN, f32::INFINITY, f32::MAX, 1e-45, -1.0];
+                let corners = [
+                    0.0,
+                    -0.0,
+                    1.0,
+                    f32::NAN,
+                    f32::INFINITY,
+                    f32::MAX,
+                    1e-45,
+                    -1.0,
+                ];
                 corners[usize::from(self.u8()) % corners.len()]
             }
             0xF0..=0xFF => f32::from_bits(self.u32()),

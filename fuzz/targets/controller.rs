@@ -16,6 +16,7 @@ use sidestep::preset;
 use sidestep::quantity::Instant;
 use sidestep::shield::StopReason;
 use sidestep_spec::avoid as avoidance;
+use std::f32::consts::{PI, TAU};
 
 /// Longer lives teach nothing new and cost time.
 const TICKS: usize = 256;
@@ -59,7 +60,14 @@ fn with_law<const N: usize>(kind: u8, bytes: &mut Bytes) {
                 config.turn_rate_max
             ));
         };
-        live::<_, N>(config, Avoid::new(config), |_, _| {}, within, follows, bytes);
+        live::<_, N>(
+            config,
+            Avoid::new(config),
+            |_, _| {},
+            within,
+            follows,
+            bytes,
+        );
     }
 }
 
@@ -139,7 +147,12 @@ fn live<L: Law<N> + Clone, const N: usize>(
             judge(advice);
         }
         if follows {
-            obey(&mut world, watched.last().speed(), watched.last().turn_rate(), elapsed);
+            obey(
+                &mut world,
+                watched.last().speed(),
+                watched.last().turn_rate(),
+                elapsed,
+            );
         }
         restore(&mut world);
     }
@@ -231,13 +244,17 @@ fn lose_something<const N: usize>(world: &mut Observation<N>, bytes: &mut Bytes)
     }
 }
 
-/// What was taken away is there again.
+/// What was taken away is there again, and what was no number is one: else one mutation would end
+/// every life.
 fn restore<const N: usize>(world: &mut Observation<N>) {
     let fresh = in_order::<N>();
     for (sample, good) in world.sonar.iter_mut().zip(fresh.sonar) {
-        *sample = sample.or(good);
+        *sample = sample.filter(|sample| sample.range > 0.0).or(good);
     }
-    world.odometry = world.odometry.or(fresh.odometry);
+    world.odometry = world
+        .odometry
+        .filter(|odometry| (odometry.x + odometry.y + odometry.heading).is_finite())
+        .or(fresh.odometry);
 }
 
 fn any_sighting(now: Instant, bytes: &mut Bytes) -> Sighting {
@@ -259,12 +276,14 @@ fn obey<const N: usize>(world: &mut Observation<N>, speed: i32, turn_rate: i32, 
     odometry.speed = speed as f32 / 1000.0;
     odometry.turn_rate = turn_rate as f32 / 1000.0;
     odometry.heading += odometry.turn_rate * seconds;
-    if odometry.heading.abs() > 3.0 {
-        odometry.heading = -odometry.heading;
+    if odometry.heading > PI {
+        odometry.heading -= TAU;
+    } else if odometry.heading < -PI {
+        odometry.heading += TAU;
     }
     odometry.x += odometry.speed * seconds * odometry.heading.cos();
     odometry.y += odometry.speed * seconds * odometry.heading.sin();
-    // The ways nearer are made nearer: what stands still comes towards who drives.
+    // What stands still comes nearer to who drives.
     for sample in world.sonar.iter_mut().flatten() {
         if sample.range < 5.0 {
             sample.range -= odometry.speed * seconds;

@@ -160,6 +160,15 @@ fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     }
 }
 
+/// Sets a flag when it goes out of scope.
+struct SetOnDrop<'a>(&'a AtomicBool);
+
+impl Drop for SetOnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 /// Runs one scenario in real time over a pseudo-terminal and leaves its run folder.
 ///
 /// # Errors
@@ -190,6 +199,8 @@ pub fn run(
     let done = AtomicBool::new(false);
     let (ending, simulation) = std::thread::scope(|scope| {
         let server = scope.spawn(|| serve(simulation, line, clock, &done));
+        // However driving ends, the simulated robot ends with it.
+        let end = SetOnDrop(&done);
         let ending = drive::run(
             &mut pilot,
             || transport::open(&port),
@@ -198,7 +209,7 @@ pub fn run(
             interrupted,
             status,
         );
-        done.store(true, Ordering::Relaxed);
+        drop(end);
         (ending, server.join())
     });
     let simulation = simulation.map_err(|_| "the simulated robot failed")?;

@@ -65,26 +65,34 @@ impl Default for Status {
 impl Status {
     /// A line to keep.
     pub fn keep(&mut self, line: &str) {
-        if self.terminal && self.shown.take().is_some() {
-            print!("\r\x1b[K");
-        }
-        println!("{line}");
+        let clear = if self.terminal && self.shown.take().is_some() {
+            "\r\x1b[K"
+        } else {
+            ""
+        };
+        put(&format!("{clear}{line}\n"));
     }
 
     /// The line of the moment. `key` tells lines apart that are worth showing at once.
     fn show(&mut self, now: u64, key: &str, line: &str) {
         let changed = self.shown.as_deref() != Some(key);
         if self.terminal {
-            print!("\r\x1b[K{line}");
-            let _ = std::io::stdout().flush();
+            put(&format!("\r\x1b[K{line}"));
         } else if changed || now >= self.shown_at + 5000 {
-            println!("{line}");
+            put(&format!("{line}\n"));
         } else {
             return;
         }
         self.shown = Some(key.to_owned());
         self.shown_at = now;
     }
+}
+
+/// Writes to standard output. Nobody looking any more (a closed pipe) is no reason to let go of a
+/// robot that is under way.
+fn put(text: &str) {
+    let mut out = std::io::stdout();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>, now: u64) {

@@ -246,7 +246,10 @@ fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &INTERRUPTED, &mut status)?;
         contacts += summary.contacts_while_moving();
-        println!("picture: {}\n", folder.join("picture.svg").display());
+        status.keep(&format!(
+            "picture: {}\n",
+            folder.join("picture.svg").display()
+        ));
         if summary.ending == Ending::Operator {
             break;
         }

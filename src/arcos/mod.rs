@@ -37,4 +37,4 @@ pub use information::{
 };
 pub use odometry::{Odometry, shortest_delta};
 pub use reader::PacketError;
-pub use receiver::{Receiver, Reception};
+pub use receiver::{BoundedReceiver, Receiver, Reception};

@@ -2,9 +2,6 @@
 
 use super::frame::{Frame, FrameError, MAX_FRAME};
 
-/// Twice the longest frame, so that bytes are moved to the front once per frame's length at most.
-const CAPACITY: usize = 2 * MAX_FRAME;
-
 /// What a [`Receiver`] has seen since it was made. Counts saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reception {
@@ -32,9 +29,13 @@ pub struct Reception {
 /// }
 /// assert_eq!(receiver.reception().skipped_bytes, 1);
 /// ```
+pub type Receiver = BoundedReceiver<MAX_FRAME>;
+
+/// A [`Receiver`] for frames of at most `LONGEST` bytes, which is at least 6: it takes less memory,
+/// and a false header withholds less.
 #[derive(Clone, Debug)]
-pub struct Receiver {
-    buffer: [u8; CAPACITY],
+pub struct BoundedReceiver<const LONGEST: usize> {
+    buffer: [u8; LONGEST],
     /// Where the bytes not yet judged begin.
     start: usize,
     /// Where they end.
@@ -42,18 +43,19 @@ pub struct Receiver {
     reception: Reception,
 }
 
-impl Default for Receiver {
+impl<const LONGEST: usize> Default for BoundedReceiver<LONGEST> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Receiver {
+impl<const LONGEST: usize> BoundedReceiver<LONGEST> {
     /// A receiver that holds no bytes.
     #[must_use]
     pub const fn new() -> Self {
+        const { assert!(LONGEST >= 6, "the shortest frame has 6 bytes") };
         Self {
-            buffer: [0; CAPACITY],
+            buffer: [0; LONGEST],
             start: 0,
             end: 0,
             reception: Reception {
@@ -71,7 +73,7 @@ impl Receiver {
         let length = loop {
             match Frame::new_checked(self.buffer.get(self.start..self.end).unwrap_or_default()) {
                 Ok(frame) => break frame.as_bytes().len(),
-                Err(FrameError::Truncated) => {
+                Err(FrameError::Truncated) if self.end - self.start < LONGEST => {
                     let (byte, rest) = input.split_first()?;
                     *input = rest;
                     self.append(*byte);
@@ -110,7 +112,7 @@ impl Receiver {
     }
 
     fn append(&mut self, byte: u8) {
-        if self.end == CAPACITY {
+        if self.end == LONGEST {
             self.buffer.copy_within(self.start.., 0);
             self.end -= self.start;
             self.start = 0;
