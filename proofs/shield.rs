@@ -87,26 +87,25 @@ pub fn guard_does_not_overflow() {
 pub fn admitted_motion_stays_safe() {
     let limits = pioneer();
     let clearance = any_in(0, 6_000);
-    let command = any_in(1, limits.speed_max());
-    let speed_bound = any_in(0, limits.speed_max() + limits.speed_gain());
-    // What admissible_speed returns for a moving robot: see `speed_is_admitted`.
-    kani::assume(limits.required_clearance(command) <= clearance);
-    kani::assume(speed_bound <= command + limits.speed_gain());
-    // One reaction time: the robot ends at most one gain above the command. Where it was faster
-    // than the command before, it braked: A ≤ b makes its travel no longer.
+    // What admissible_speed shows of a command that moves the robot (`speed_is_admitted`): it was
+    // judged at a speed no less than the command, one gain below what the robot may be at.
+    let judged_at = any_in(0, limits.speed_max() + limits.speed_gain());
+    kani::assume(limits.required_clearance(judged_at) <= clearance);
+    // One reaction time: the robot ends at most one gain above that. Where it was faster than the
+    // command before, it braked: A ≤ b makes its travel no longer.
     let gain = limits.speed_gain();
-    let after = any_in(0, command + gain);
+    let after = any_in(0, judged_at + gain);
     let e = limits.reaction_time();
     let robot = any_in(0, 5_000);
     let obstacle = any_in(0, 5_000);
-    kani::assume(2000 * robot <= (2 * command + gain) * e);
+    kani::assume(2000 * robot <= (2 * judged_at + gain) * e);
     kani::assume(1000 * obstacle <= limits.obstacle_speed() * e);
     let left = clearance - robot - obstacle;
     let safe = |speed, clearance| {
         promise::safe_state(speed, clearance, limits.braking(), limits.obstacle_speed())
     };
     assert!(promise::stays_safe(true, safe(after, left)));
-    kani::cover!(after > command, "the robot ends faster than commanded");
+    kani::cover!(after > judged_at, "the robot ends faster than judged");
     kani::cover!(left < 600, "near the end of the room");
 }
 
@@ -151,6 +150,7 @@ pub fn any_contact(_limits: &Limits, _distance: i32, _closing: i32) -> bool {
 //= shield.INV-1
 //= shield.INV-6
 //= shield.INV-9
+//= shield.INV-11
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
@@ -186,8 +186,9 @@ pub fn speed_is_admitted() {
         elapsed
     ));
     assert!(promise::admitted(speed, admission.required, room.clearance));
-    assert!(promise::fast_enough_or_braking(
+    assert!(promise::judged_at_what_it_may_be(
         speed,
+        admission.judged_at,
         speed_bound,
         limits.speed_gain()
     ));

@@ -336,9 +336,9 @@ impl Limits {
     /// SH.5: the greatest speed, in mm/s, of those from 0 to `advised` that the base reaches from
     /// `last` within `elapsed` ms (0 to ε) and that every guard admits.
     ///
-    /// `speed_bound` is what the robot's speed may be now: SH.3 allows for one speed gain above
-    /// the command, so a robot that is faster than that is told to brake to rest rather than to a
-    /// speed in between.
+    /// `speed_bound` is what the robot's speed may be now. SH.3 allows for one speed gain above the
+    /// speed it is asked for, so a robot that may be faster than that is judged by what it may be
+    /// at: if that much room is not there, it is told to brake to rest, not to a speed in between.
     #[must_use]
     pub fn admissible_speed(
         &self,
@@ -366,12 +366,22 @@ impl Limits {
             (wish < advised).then_some(Limit::Base)
         };
         // Asked once more, so that what is returned does not rest on the search.
-        let required = self.required_clearance(speed);
-        let held = required <= room.clearance && speed_bound <= speed + self.speed_gain();
-        Admission {
-            speed: if held { speed } else { 0 },
-            required,
-            limit,
+        let judged_at = speed.max(speed_bound - self.speed_gain());
+        let required = self.required_clearance(judged_at);
+        if required <= room.clearance {
+            Admission {
+                speed,
+                judged_at,
+                required,
+                limit,
+            }
+        } else {
+            Admission {
+                speed: 0,
+                judged_at,
+                required,
+                limit: Some(Limit::Clearance { sonar: room.sonar }),
+            }
         }
     }
 }
@@ -410,7 +420,10 @@ impl Room {
 pub struct Admission {
     /// The speed, mm/s.
     pub speed: i32,
-    /// The clearance it needs, mm; no more than there is if the speed is not 0.
+    /// The speed it was judged at, mm/s: at least itself, and no less than one speed gain below
+    /// what the robot's speed may be now.
+    pub judged_at: i32,
+    /// The clearance that needs, mm; no more than there is if the speed is not 0.
     pub required: i32,
     /// What made it less than advised, if anything did.
     pub limit: Option<Limit>,

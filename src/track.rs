@@ -202,11 +202,10 @@ pub(crate) fn follow<const N: usize>(
     let mut nearest: Option<Echo> = None;
     let mut matched: Option<(Echo, f32)> = None;
     let mut seen_past = false;
-    for i in 0..N {
-        let SonarReading::Echo(distance) = sonar[i] else {
+    for (i, (reading, at)) in sonar.iter().zip(ring.sonars()).enumerate() {
+        let SonarReading::Echo(distance) = *reading else {
             continue;
         };
-        let at = &ring.sonars()[i];
         let point = at.position + at.axis * distance.get();
         let echo = Echo {
             sonar: i,

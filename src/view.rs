@@ -294,12 +294,12 @@ fn judge_odometry(
 /// Least range that the sonars to the left and to the right of straight ahead measure.
 fn room<const N: usize>(sonar: &[SonarReading; N], ring: &Ring<N>, config: &Config) -> [Length; 2] {
     let mut room = [length(config.sonar_range_max); 2];
-    for i in 0..N {
-        let range = match sonar[i] {
+    for (reading, at) in sonar.iter().zip(ring.sonars()) {
+        let range = match *reading {
             SonarReading::Echo(range) | SonarReading::NoEcho(range) => range,
             SonarReading::TooNear | SonarReading::Stale | SonarReading::Invalid => Length::ZERO,
         };
-        let axis = ring.sonars()[i].axis;
+        let axis = at.axis;
         // Behind the robot there is nothing to choose.
         if axis.x >= -0.1 && axis.y > 0.0 {
             room[0] = room[0].min(range);

@@ -59,7 +59,7 @@ mod kani {
 
     impl Arbitrary for bool {
         fn any() -> Self {
-            next() % 2 == 0
+            next().is_multiple_of(2)
         }
     }
 
@@ -125,6 +125,7 @@ macro_rules! harnesses {
 }
 
 const HARNESSES: &[(&str, &str, fn())] = harnesses! {
+    arcos: checksum_is_as_specified, frame_is_checked, written_frame_is_accepted, receiver_loses_nothing, host_frame_is_reencoded, integer_comes_back, information_is_checked, short_information_is_checked, strings_are_bounded, displacement_is_shortest, odometry_moves_by_steps, compass_is_within_conventions;
     avoid: obstacle_speed_is_clamped, lateral_speed_is_not_below_printed, times_are_times,
         turn_is_at_most_half, maneuver_turns_away, maneuver_speed_is_bounded, modes_settle,
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,

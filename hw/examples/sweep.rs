@@ -1,10 +1,12 @@
 //! Seeds of a scenario in virtual time: contacts, arrivals, stops.
 //!
 //! `cargo run --release -p sidestep-hw --example sweep -- SCENARIO SEEDS [KEY=VALUE …]`, where a
-//! key is a configuration parameter as in the TOML file, or `dropout`, `false_echo`, `speed_limit`.
+//! key is a configuration parameter as in the TOML file, or one of the simulation's: `dropout`,
+//! `false_echo`, `courteous`, `speed_limit` (m/s, of people), `ping_ms` (sonars one by one).
 
 use sidestep::avoid::Avoid;
 use sidestep_hw::{config, demo};
+use sidestep_sim::robot::Firing;
 use sidestep_sim::scenario::{Knobs, Scenario};
 use std::collections::BTreeMap;
 
@@ -17,12 +19,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ..Knobs::default()
     };
     let mut speed_limit = 0.8;
+    let mut ping_ms = 0;
     let mut toml = String::new();
     for argument in arguments {
         let (key, value) = argument.split_once('=').ok_or("KEY=VALUE")?;
         match key {
             "dropout" => knobs.sonar_faults.dropout = value.parse()?,
             "false_echo" => knobs.sonar_faults.false_echo = value.parse()?,
+            "ping_ms" => ping_ms = value.parse()?,
             "speed_limit" => speed_limit = value.parse()?,
             "courteous" => knobs.courteous = value.parse()?,
             _ => toml += &format!("{key} = {value}\n"),
@@ -34,7 +38,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut stops: BTreeMap<String, u64> = BTreeMap::new();
     for seed in 0..seeds {
         knobs.seed = seed;
-        let scenario = Scenario::named(&name, &knobs)?.randomised(seed, speed_limit)?;
+        let mut scenario = Scenario::named(&name, &knobs)?.randomised(seed, speed_limit)?;
+        if ping_ms > 0 {
+            scenario.robot.firing = Firing::RoundRobin { ping_ms };
+        }
         let (summary, _) = demo::run_in_memory(&scenario, &config, Avoid::new(config.core))?;
         if summary.contacts_while_moving() > 0 && moving < 10 {
             println!("seed {seed}: {:?}", summary.outcome);

@@ -162,7 +162,7 @@ pub fn table(
                 let third = match bearing {
                     b if b.abs() <= 30.5 => 1,
                     b if b > 0.0 && b <= 90.5 => 0,
-                    b if b < 0.0 && b >= -90.5 => 2,
+                    b if (-90.5..0.0).contains(&b) => 2,
                     _ => continue,
                 };
                 least[third] = least[third].min(*range);

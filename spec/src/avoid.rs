@@ -268,7 +268,8 @@ pub fn turn_in_range(quarter_turns: f32) -> bool {
 /// avoid.INV-7: the turn (σ·|Δθ|, positive is left) is away from the obstacle's bearing.
 #[must_use]
 pub fn turns_away(signed_turn: f32, bearing: f32) -> bool {
-    !(signed_turn > 0.0 && bearing > 0.0) && !(signed_turn < 0.0 && bearing < 0.0)
+    let towards = (signed_turn > 0.0 && bearing > 0.0) || (signed_turn < 0.0 && bearing < 0.0);
+    !towards
 }
 
 /// avoid.INV-8: an angle lies in [−π, π] (in f32, where π itself is rounded up).

@@ -107,10 +107,16 @@ pub fn admitted(speed: i32, required: i32, clearance: i32) -> bool {
     speed == 0 || required <= clearance
 }
 
-/// shield.INV-11: a robot that may be faster than its command and one speed gain is braking.
+/// shield.INV-11: a command that moves the robot was judged at no less than itself, and at no less
+/// than what the robot may be at, less one speed gain.
 #[must_use]
-pub fn fast_enough_or_braking(speed: i32, speed_bound: i32, speed_gain: i32) -> bool {
-    speed == 0 || speed_bound <= speed + speed_gain
+pub fn judged_at_what_it_may_be(
+    speed: i32,
+    judged_at: i32,
+    speed_bound: i32,
+    speed_gain: i32,
+) -> bool {
+    speed == 0 || (judged_at >= speed && speed_bound <= judged_at + speed_gain)
 }
 
 /// shield.INV-10: the search finds the greatest speed there is up to `wish` and `threshold`.

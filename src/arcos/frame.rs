@@ -2,8 +2,10 @@
 
 use core::fmt;
 
-/// The two bytes that begin every frame.
-const HEADER: [u8; 2] = [0xFA, 0xFB];
+/// The first byte of every frame.
+const FIRST: u8 = 0xFA;
+/// The second byte of every frame.
+const SECOND: u8 = 0xFB;
 /// Header and count: what precedes the counted bytes.
 const PREFIX: usize = 3;
 /// The checksum's length in bytes.
@@ -88,10 +90,8 @@ impl<'a> Frame<'a> {
     /// error when none could.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let count = match *bytes {
-            [first, second, count, ..] if [first, second] == HEADER => count,
-            [first, second] if [first, second] == HEADER => return Err(FrameError::Truncated),
-            [first] if first == HEADER[0] => return Err(FrameError::Truncated),
-            [] => return Err(FrameError::Truncated),
+            [FIRST, SECOND, count, ..] => count,
+            [] | [FIRST] | [FIRST, SECOND] => return Err(FrameError::Truncated),
             _ => return Err(FrameError::Header),
         };
         if !(MIN_COUNT..=MAX_COUNT).contains(&count) {
@@ -235,7 +235,7 @@ impl<'b> FrameWriter<'b> {
         let (prefix, counted) = frame.split_first_chunk_mut::<PREFIX>().ok_or(too_long)?;
         let count = u8::try_from(counted.len()).map_err(|_| too_long)?;
         let (packet, carried) = counted.split_last_chunk_mut::<CHECKSUM>().ok_or(too_long)?;
-        *prefix = [HEADER[0], HEADER[1], count];
+        *prefix = [FIRST, SECOND, count];
         *carried = checksum(packet).to_be_bytes();
         Frame::new_checked(frame).map_err(|_| too_long)
     }
