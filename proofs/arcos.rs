@@ -29,7 +29,7 @@ fn any_frame<const N: usize>(number: u8, buffer: &mut [u8]) -> Option<Frame<'_>>
 //= arcos.INV-1
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(14))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn checksum_is_as_specified() {
     let bytes: [u8; 12] = kani::any();
     let length = usize::from(kani::any::<u8>() % 13);
@@ -45,7 +45,7 @@ pub fn checksum_is_as_specified() {
 //= arcos.INV-2
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(14))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn frame_is_checked() {
     let bytes: [u8; 12] = kani::any();
     let length = usize::from(kani::any::<u8>() % 13);
@@ -94,7 +94,7 @@ fn written_frame<const N: usize>(buffer: &mut [u8]) {
 //= arcos.INV-3
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(12))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn written_frame_is_accepted() {
     written_frame::<0>(&mut [0; 6]);
     written_frame::<1>(&mut [0; 7]);
@@ -116,7 +116,7 @@ pub fn written_frame_is_accepted() {
 //= arcos.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(15))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(
     kani,
     kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
@@ -169,7 +169,7 @@ fn reencoded<'b, const N: usize>(buffer: &'b mut [u8], again: &mut [u8]) -> Argu
 //= arcos.INV-6
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(13))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(
     kani,
     kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
@@ -197,7 +197,7 @@ pub fn host_frame_is_reencoded() {
 //= arcos.INV-7
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(8))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn integer_comes_back() {
     let value: i32 = kani::any();
     let command = HostCommand::velocity(value);
@@ -233,7 +233,7 @@ fn judged<const N: usize>(buffer: &mut [u8]) -> Result<StandardInformation, Pack
 //= arcos.INV-9
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(5))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(
     kani,
     kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
@@ -258,7 +258,7 @@ pub fn information_is_checked() {
 //= arcos.INV-9
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(3))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(
     kani,
     kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
@@ -276,7 +276,7 @@ pub fn short_information_is_checked() {
 //= arcos.INV-14
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(16))]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(
     kani,
     kani::stub(crate::arcos::checksum, crate::proofs::arcos::same_for_all)
@@ -302,7 +302,7 @@ pub fn strings_are_bounded() {
 /// A displacement is the shortest, for any two counters.
 //= arcos.INV-11
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn displacement_is_shortest() {
     let (previous, current) = (kani::any(), kani::any());
     let delta = shortest_delta(previous, current);
@@ -321,7 +321,7 @@ pub fn displacement_is_shortest() {
 /// Any three SIPs move the position by no more than one step each, the first by none.
 //= arcos.INV-12
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn odometry_moves_by_steps() {
     let mut odometry = Odometry::new();
     odometry.update(kani::any(), kani::any());
@@ -345,7 +345,7 @@ pub fn odometry_moves_by_steps() {
 /// A compass byte gives a heading within 1° of both conventions, or none.
 //= arcos.INV-13
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 pub fn compass_is_within_conventions() {
     let byte = kani::any();
     let heading = compass_heading_deg(byte);

@@ -280,7 +280,7 @@ pub fn image_direction_is_folded() {
 //= avoid.INV-11
 //= avoid.INV-13
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]

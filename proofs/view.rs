@@ -10,7 +10,7 @@ use sidestep::observation::{
     BaseStatus, Observation, OdometrySample, SonarReading, SonarSample, classify,
 };
 use sidestep::preset;
-use sidestep::quantity::Instant;
+use sidestep::quantity::{Angle, Instant, Length};
 use sidestep::ring::{Placement, Ring};
 use sidestep::track::Obstacle;
 use sidestep::view::{EchoMemory, GoalView, Memory, Pose, View};
@@ -122,6 +122,33 @@ fn any_reading() -> SonarReading {
         2 => SonarReading::TooNear,
         3 => SonarReading::Stale,
         _ => SonarReading::Invalid,
+    }
+}
+
+/// Nothing within four metres, the base in order, at 1 s.
+pub fn clear_view() -> View<1> {
+    View {
+        now: Instant(1000),
+        pose: Pose {
+            position: Vector2::new(0.0, 0.0),
+            heading: Angle::ZERO,
+        },
+        speed: 0.0,
+        goal: GoalView {
+            heading: Angle::ZERO,
+            distance: 5.0,
+        },
+        sonar: [SonarReading::NoEcho(Length::MAX)],
+        range: [4_000],
+        clearance: [4_000],
+        obstacle: None,
+        room: [Length::MAX; 2],
+        base: BaseStatus {
+            motors_enabled: true,
+            stalled: false,
+            emergency_stop: false,
+        },
+        guard: None,
     }
 }
 

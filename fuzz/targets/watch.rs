@@ -216,10 +216,6 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     /// A robot that is slower than its law would have it says why.
     fn judge_reason(&self, decision: &Decision<N>, advice: Advice) {
         let advised = (advice.speed * 1000.0) as i32;
-        let bound = decision.view.map_or(0, |view| up(view.speed.abs()));
-        if bound.max(self.last.speed()) > self.limits().speed_gain() {
-            return; // TEMPORARY
-        }
         let slower = decision.command.speed() < advised;
         let reasoned = decision.stop.is_some() || decision.limit.is_some();
         assert!(
@@ -233,7 +229,16 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     fn judge_motion(&self, view: &View<N>, command: Command) {
         let limits = self.limits();
         let (speed, turn_rate) = (command.speed(), command.turn_rate());
-        let required = limits.required_clearance(speed);
+        // What the robot may be at, and so what it must have room for.
+        let speed_bound = up(view.speed.abs()).max(self.last.speed());
+        let judged_at = speed.max(speed_bound - limits.speed_gain());
+        assert!(shield::judged_at_what_it_may_be(
+            speed,
+            judged_at,
+            speed_bound,
+            limits.speed_gain()
+        ));
+        let required = limits.required_clearance(judged_at);
         for &clearance in &view.clearance {
             assert!(shield::admitted(speed, required, clearance));
             assert!(shield::turn_ends_before_contact(
@@ -244,12 +249,6 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
                 clearance
             ));
         }
-        let speed_bound = up(view.speed.abs()).max(self.last.speed());
-        assert!(shield::fast_enough_or_braking(
-            speed,
-            speed_bound,
-            limits.speed_gain()
-        ));
         if let Some(obstacle) = &view.obstacle {
             let distance = (obstacle.distance.get() * 1000.0) as i32 - obstacle.contact_range;
             let closing = speed + up(obstacle.speed.value.get());

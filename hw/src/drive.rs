@@ -3,7 +3,11 @@
 use crate::pilot::Pilot;
 use crate::session::Output;
 use crate::transport::{Transport, TransportError};
+use sidestep::avoid::{contact_time_bound, time_to_collision};
 use sidestep::law::Law;
+use sidestep::quantity::{Angle, Length, Speed};
+use sidestep::view::View;
+use std::f32::consts::FRAC_PI_2;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -95,6 +99,37 @@ fn put(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
+/// S1 E4 for people to read: the time to collision with the obstacle ahead as the paper reckons it,
+/// and the bound before which no contact can happen.
+fn times<const N: usize>(view: &View<N>) -> Option<String> {
+    let obstacle = view.obstacle.as_ref()?;
+    let ahead = Angle::radians(FRAC_PI_2).ok()?;
+    let speed = Speed::metres_per_second(view.speed.abs()).ok()?;
+    let contact = Length::metres(obstacle.contact_range.max(0) as f32 / 1000.0).ok()?;
+    let bearing = obstacle.direction.minus(view.pose.heading);
+    let show = |time: Option<f32>| {
+        time.filter(|time| *time < 100.0)
+            .map_or_else(|| "-".to_owned(), |time| format!("{time:.1} s"))
+    };
+    Some(format!(
+        ", collision in {} (contact not before {})",
+        show(time_to_collision(
+            obstacle.distance,
+            ahead,
+            bearing,
+            speed,
+            obstacle.speed.value,
+            ahead
+        )),
+        show(contact_time_bound(
+            obstacle.distance,
+            contact,
+            speed,
+            obstacle.speed.value
+        )),
+    ))
+}
+
 fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>, now: u64) {
     while let Some((t, text)) = pilot.next_event() {
         status.keep(&format!("{:8.1} s  {text}", t as f64 / 1000.0));
@@ -118,8 +153,9 @@ fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>,
         Some(stop) => crate::pilot::kind_of(*stop),
         None => decision.mode,
     };
+    let times = decision.view.as_ref().and_then(times).unwrap_or_default();
     let line = format!(
-        "{:8.1} s  {state:<9} v {:4} mm/s  turn {:5} mrad/s  nearest echo {nearest}  {reason}",
+        "{:8.1} s  {state:<9} v {:4} mm/s  turn {:5} mrad/s  nearest echo {nearest}{times}  {reason}",
         now as f64 / 1000.0,
         decision.command.speed(),
         decision.command.turn_rate(),
