@@ -134,6 +134,7 @@ pub fn clear_view() -> View<1> {
             heading: Angle::ZERO,
         },
         speed: 0.0,
+        odometry_age: 0,
         goal: GoalView {
             heading: Angle::ZERO,
             distance: 5.0,
@@ -162,6 +163,7 @@ pub fn any_view() -> View<1> {
             heading: any_angle(),
         },
         speed: any_between(-10.0, 10.0),
+        odometry_age: kani::any(),
         goal: GoalView {
             heading: any_angle(),
             distance: any_between(0.0, 2e4),
@@ -200,6 +202,7 @@ pub fn any_view() -> View<1> {
 /// Pioneer preset.
 //= view.INV-2
 //= view.INV-3
+//= view.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]

@@ -25,7 +25,7 @@ pub fn obstacle_robot_angle(heading: Angle, bearing: Angle) -> Angle {
 /// An obstacle's speed as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObstacleSpeed {
-    /// Upper estimate of the speed, at most v_o,max.
+    /// The speed as estimated, at most v_o,max.
     pub value: Speed,
     /// The measurement reached v_o,max or could not be made: the true speed may be greater than
     /// `value`.
@@ -439,9 +439,9 @@ impl Avoid {
         };
         if let Some(obstacle) = &view.obstacle {
             situation.corridor_free = !self.in_corridor(obstacle, view, view.goal.heading);
-            // What stands still beside the way to the goal is no obstacle to it.
+            // What is seen to stand still beside the way to the goal is no obstacle to it.
             let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
-            if !situation.corridor_free || moving {
+            if !situation.corridor_free || moving || !obstacle.visible {
                 situation.distance = Some(obstacle.distance);
                 // Receding that is not confirmed yet is neither closing nor gone.
                 let confirmed = self.receding >= self.config.confirm_samples as u32;

@@ -76,7 +76,7 @@ parameters! {
         "Clearance wanted on either side of the path ahead; echoes inside it are obstacles to the law.";
     hold_time: "s", 0.1, 10.0,
         "How long an obstacle that is no longer seen is still believed to be there.";
-    confirm_samples: "samples", 1.0, 20.0,
+    confirm_samples: "samples", 2.0, 20.0,
         "Readings in a row that it takes to believe that an obstacle recedes or has gone.";
     heading_gain: "1/s", 0.1, 5.0,
         "Turn rate per radian of heading error.";
@@ -93,9 +93,9 @@ parameters! {
     braking: "m/s^2", 0.1, 10.0,
         "The base brakes at least as hard as this, on this floor, with this load.";
     turn_acceleration: "rad/s^2", 0.1, 20.0,
-        "The turn rate changes no faster than this.";
+        "The base stops turning at least this hard; it is not asked to start turning harder.";
     reaction_time: "s", 0.02, 2.0,
-        "From one command taking effect to the next one taking effect, at the longest.";
+        "From the moment the sensors describe to the moment the command of the next tick takes effect, at the longest: the way of a reading to here, the time between two ticks, the way of a command, and the base's own delay.";
     resume_clearance: "m", 0.0, 1.0,
         "Clearance beyond what a stop demands before the robot moves again.";
     resume_samples: "samples", 1.0, 50.0,

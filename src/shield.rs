@@ -279,21 +279,27 @@ impl Limits {
             + divide_up(self.obstacle_speed * speed, self.braking)
     }
 
+    /// The robot's own way to rest, in mm, if for one reaction time it is no faster than `speed`
+    /// (mm/s, 0 to 12,000) and brakes then: v·ε + v²/2b.
+    #[must_use]
+    pub const fn way_to_rest(&self, speed: i32) -> i32 {
+        divide_up(speed * self.reaction_time, 1000) + divide_up(speed * speed, 2 * self.braking)
+    }
+
     /// Speed in mm/s by which the robot may gain on `speed` within one reaction time: A·ε.
     #[must_use]
     pub const fn speed_gain(&self) -> i32 {
         divide_up(self.acceleration * self.reaction_time, 1000)
     }
 
-    /// SH.3: clearance in mm that is needed to be told to go `speed` (mm/s, 0 to 2,000) for one
-    /// reaction time: travel of robot and obstacle while the robot may be accelerating, then the
-    /// stopping distance from the speed it may have by then.
+    /// SH.3: clearance in mm that is needed to be told to go `speed` (mm/s, 0 to 12,000 less one
+    /// gain) for one reaction time: travel of robot and obstacle at the speed the robot may have
+    /// by the end of it, then the stopping distance from that speed.
     #[must_use]
     pub const fn required_clearance(&self, speed: i32) -> i32 {
-        let gain = self.speed_gain();
-        let travel = divide_up((speed + self.obstacle_speed) * self.reaction_time, 1000)
-            + divide_up(gain * self.reaction_time, 2000);
-        self.stopping_distance(speed + gain) + travel
+        let fastest = speed + self.speed_gain();
+        divide_up((fastest + self.obstacle_speed) * self.reaction_time, 1000)
+            + self.stopping_distance(fastest)
     }
 
     /// SH.4: contact is possible within the stop time: t_lb = distance/closing ≤ T, with the
@@ -308,7 +314,10 @@ impl Limits {
     /// gain in `elapsed` ms (0 to ε). Turning slower is always allowed.
     ///
     /// SH.6: the turn, too, ends before contact: after reacting for ε the robot stops turning in
-    /// ω/α, and the obstacle has not come nearer than the clearance by then: V(ε + ω/α) ≤ d.
+    /// ω/α, and robot and obstacle have not closed the clearance by then:
+    /// x + V(ε + ω/α) ≤ d, where x is the robot's own way to rest, see [`way_to_rest`].
+    ///
+    /// [`way_to_rest`]: Self::way_to_rest
     #[must_use]
     pub fn admissible_turn_rate(
         &self,
@@ -584,9 +593,13 @@ impl Shield {
         None
     }
 
-    /// The robot is no faster than this, in mm/s: what is measured, or what it was told last.
+    /// The robot is no faster than this, in mm/s: what was measured and it may have gained since,
+    /// or what it was told last. At most 11,000: measured speeds go up to 10 m/s.
     fn speed_bound<const N: usize>(&self, view: &View<N>) -> i32 {
-        millimetres_up(view.speed.abs()).max(self.last.speed)
+        let limits = &self.limits;
+        let age = view.odometry_age.min(limits.reaction_time as u64) as i32;
+        let gained = divide_up(limits.acceleration * age, 1000).min(1_000);
+        (millimetres_up(view.speed.abs()) + gained).max(self.last.speed)
     }
 
     /// Turns a law's advice into a command, or into rest. To be called once per tick, after
@@ -603,30 +616,32 @@ impl Shield {
             .min(self.limits.reaction_time as u64) as i32;
         self.last_tick = Some(view.now);
         let limits = &self.limits;
-        let advised = (advice.turn_rate * 1000.0) as i32;
         let room = Room::new(view);
-        let turn_rate =
-            limits.admissible_turn_rate(self.last.turn_rate, advised, elapsed, room.clearance);
-        match self.stop {
-            Some(reason) => self.verdict(
-                Command {
-                    speed: 0,
-                    turn_rate: if reason.may_turn() { turn_rate } else { 0 },
-                },
-                None,
-            ),
-            None => {
-                let admission = limits.admissible_speed(
-                    self.last.speed,
-                    (advice.speed * 1000.0) as i32,
-                    elapsed,
-                    self.speed_bound(view),
-                    room,
-                );
-                let speed = admission.speed;
-                self.verdict(Command { speed, turn_rate }, admission.limit)
-            }
-        }
+        let speed_bound = self.speed_bound(view);
+        let (speed, limit) = if self.stop.is_none() {
+            let advised = (advice.speed * 1000.0) as i32;
+            let admission =
+                limits.admissible_speed(self.last.speed, advised, elapsed, speed_bound, room);
+            (admission.speed, admission.limit)
+        } else {
+            (0, None)
+        };
+        let turn_rate = if self.stop.is_none_or(StopReason::may_turn) {
+            let fastest = if speed == 0 {
+                speed_bound
+            } else {
+                speed_bound.max(speed + limits.speed_gain())
+            };
+            limits.admissible_turn_rate(
+                self.last.turn_rate,
+                (advice.turn_rate * 1000.0) as i32,
+                elapsed,
+                room.clearance.saturating_sub(limits.way_to_rest(fastest)),
+            )
+        } else {
+            0
+        };
+        self.verdict(Command { speed, turn_rate }, limit)
     }
 
     /// The verdict of a tick without a view: rest.

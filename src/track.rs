@@ -24,14 +24,16 @@ pub struct Obstacle {
     pub position: Vector2<f32>,
     /// How its distance changes.
     pub trend: Trend,
-    /// Upper estimate of its speed.
+    /// Estimate of its speed: from a camera by S1 E3 if one saw it, else how fast it comes nearer.
     pub speed: ObstacleSpeed,
-    /// It was seen in this tick, not only remembered.
+    /// It was seen within the greatest age of a sonar reading, not only remembered.
     pub visible: bool,
 }
 
 /// How many distances of the tracked obstacle are kept.
 const HISTORY: usize = 8;
+/// They are at least this far apart, in ms.
+const HISTORY_GAP: u64 = 60;
 /// A trend is taken over at least this time, in ms: over less, noise outweighs motion.
 const TREND_TIME: u64 = 400;
 /// Slower changes of distance than this count as none, in m/s. One per cent of range noise at
@@ -47,7 +49,7 @@ pub(crate) struct Track {
     distance: Length,
     sonar: usize,
     seen: Instant,
-    /// Ticks in a row in which a sonar saw past its place.
+    /// Ticks in which a sonar saw past its place since it was seen there.
     absent: u32,
     /// Latest distances seen, newest first.
     history: [Option<(Instant, f32)>; HISTORY],
@@ -77,10 +79,17 @@ impl Track {
 
     fn seen_at(&self, echo: Echo, now: Instant) -> Self {
         let mut track = Self::new(echo, now);
-        // A second look in the same millisecond replaces the first.
-        let older = usize::from(self.seen == now);
+        // Looks that follow each other closely replace each other, so that the history reaches
+        // back far enough for a trend however often the robot looks.
+        let close = match (self.history[0], self.history[1]) {
+            (Some((newest, _)), Some((before, _))) => {
+                newest.since(before).is_none_or(|gap| gap < HISTORY_GAP)
+            }
+            _ => false,
+        };
         for i in 1..HISTORY {
-            track.history[i] = self.history.get(i - 1 + older).copied().flatten();
+            let from = i - 1 + usize::from(close);
+            track.history[i] = self.history.get(from).copied().flatten();
         }
         track
     }
@@ -90,11 +99,7 @@ impl Track {
         let offset = math::norm(self.position - pose.position);
         let inset = math::norm(ring.sonars()[self.sonar].position);
         Self {
-            absent: if seen_past {
-                self.absent.saturating_add(1)
-            } else {
-                0
-            },
+            absent: self.absent.saturating_add(u32::from(seen_past)),
             distance: Length::metres((offset - inset).max(0.0)).unwrap_or(self.distance),
             ..*self
         }
@@ -127,7 +132,10 @@ impl Track {
         let direction = Angle::radians(math::atan2(offset.y, offset.x)).unwrap_or(Angle::ZERO);
         let bearing = direction.minus(pose.heading);
         let rate = self.rate();
-        let visible = self.seen == now;
+        // A ring whose sonars fire in turn takes some time to look everywhere.
+        let visible = now
+            .since(self.seen)
+            .is_some_and(|age| age <= milliseconds(config.sonar_age_max));
         let trend = match rate {
             Some(rate) if visible && rate > TREND_RATE => Trend::Receding,
             Some(rate) if visible && rate < -TREND_RATE => Trend::Closing,
@@ -194,6 +202,7 @@ fn closing_speed(rate: Option<f32>, own: f32, speed_max: Speed) -> ObstacleSpeed
 pub(crate) fn follow<const N: usize>(
     track: &mut Option<Track>,
     sonar: &[SonarReading; N],
+    fresh: &[bool; N],
     pose: &Pose,
     now: Instant,
     ring: &Ring<N>,
@@ -206,6 +215,9 @@ pub(crate) fn follow<const N: usize>(
         let SonarReading::Echo(distance) = *reading else {
             continue;
         };
+        if !fresh[i] {
+            continue;
+        }
         let point = at.position + at.axis * distance.get();
         let echo = Echo {
             sonar: i,
@@ -224,12 +236,12 @@ pub(crate) fn follow<const N: usize>(
         }
     }
 
-    let fresh = nearest.map(|echo| Track::new(echo, now));
+    let new = nearest.map(|echo| Track::new(echo, now));
     *track = match (*track, matched) {
-        (None, _) => fresh,
+        (None, _) => new,
         (Some(old), Some((echo, _))) => match nearest {
             // Something else is clearly nearer.
-            Some(other) if other.distance.get() + GATE < echo.distance.get() => fresh,
+            Some(other) if other.distance.get() + GATE < echo.distance.get() => new,
             _ => Some(old.seen_at(echo, now)),
         },
         (Some(old), None) => {
@@ -240,7 +252,7 @@ pub(crate) fn follow<const N: usize>(
                 .is_none_or(|age| age > milliseconds(config.hold_time));
             let overtaken = nearest.is_some_and(|echo| echo.distance < old.distance);
             if gone || expired || overtaken {
-                fresh
+                new
             } else {
                 Some(old)
             }

@@ -61,6 +61,8 @@ pub struct View<const N: usize> {
     pub pose: Pose,
     /// Measured forward speed in m/s, −10 to 10.
     pub speed: f32,
+    /// How long ago that was measured, ms.
+    pub odometry_age: u64,
     /// The way to the goal.
     pub goal: GoalView,
     /// The judged reading of each sonar.
@@ -87,6 +89,8 @@ struct Held {
     seen: Instant,
     /// Echoes in a row from farther away.
     farther: u32,
+    /// When the last of them was measured: one that is looked at twice counts once.
+    counted: Instant,
 }
 
 impl Held {
@@ -95,6 +99,7 @@ impl Held {
             range,
             seen,
             farther: 0,
+            counted: seen,
         }
     }
 }
@@ -119,6 +124,8 @@ pub struct EchoMemory {
 pub struct Memory<const N: usize> {
     sonar: [EchoMemory; N],
     track: Option<Track>,
+    /// Time of the tick before.
+    last: Option<Instant>,
 }
 
 impl<const N: usize> Default for Memory<N> {
@@ -126,6 +133,7 @@ impl<const N: usize> Default for Memory<N> {
         Self {
             sonar: [EchoMemory::default(); N],
             track: None,
+            last: None,
         }
     }
 }
@@ -147,6 +155,8 @@ impl<const N: usize> Memory<N> {
         let mut sonar = [SonarReading::Stale; N];
         let mut range = [0; N];
         let mut clearance = [0; N];
+        // What was there in the tick before has been looked at.
+        let mut fresh = [false; N];
         for i in 0..N {
             let sample = observation.sonar[i];
             sonar[i] = classify(
@@ -157,18 +167,21 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             );
             let taken_at = sample.map_or(now, |sample| sample.taken_at);
+            fresh[i] = self.last.is_none_or(|last| taken_at > last);
             let bound = self.sonar[i].update(measured(sonar[i]), taken_at, now, config);
             range[i] = bound.range;
             clearance[i] = bound.reachable - ring.sonars()[i].contact_range;
         }
 
-        let (pose, speed) = judge_odometry(observation.odometry, now, config)?;
+        self.last = Some(now);
+
+        let (pose, speed, odometry_age) = judge_odometry(observation.odometry, now, config)?;
         let to_goal = goal - pose.position;
         let goal = GoalView {
             heading: Angle::radians(math::atan2(to_goal.y, to_goal.x)).unwrap_or(Angle::ZERO),
             distance: math::norm(to_goal),
         };
-        track::follow(&mut self.track, &sonar, &pose, now, ring, config);
+        track::follow(&mut self.track, &sonar, &fresh, &pose, now, ring, config);
         let obstacle = self.track.map(|track| {
             track.obstacle(
                 now,
@@ -183,6 +196,7 @@ impl<const N: usize> Memory<N> {
             now,
             pose,
             speed,
+            odometry_age,
             goal,
             sonar,
             range,
@@ -225,13 +239,17 @@ impl EchoMemory {
             // An echo from farther away than the same thing can have gone is another thing's: it
             // counts only when it keeps coming. Any other echo counts at once.
             (Some(old), Some(range)) if range > old.range + way(old.seen, taken_at) + SCATTER => {
-                let farther = old.farther + 1;
+                let farther = old.farther + u32::from(taken_at > old.counted);
                 let gone = farther >= config.confirm_samples as u32;
                 let expired = now.since(old.seen).is_none_or(|age| age > hold_time);
                 Some(if gone || expired {
                     Held::new(range, taken_at)
                 } else {
-                    Held { farther, ..old }
+                    Held {
+                        farther,
+                        counted: taken_at,
+                        ..old
+                    }
                 })
             }
             (_, Some(range)) => Some(Held::new(range, taken_at)),
@@ -245,7 +263,7 @@ impl EchoMemory {
         match self.held {
             None => Bound {
                 range: no_echo,
-                reachable: no_echo,
+                reachable: no_echo - way(taken_at, now),
             },
             Some(held) => Bound {
                 range: held.range,
@@ -264,12 +282,12 @@ fn measured(reading: SonarReading) -> Option<i32> {
     }
 }
 
-/// Checks the odometry: pose and forward speed.
+/// Checks the odometry: pose, forward speed, and age in ms.
 fn judge_odometry(
     sample: Option<OdometrySample>,
     now: Instant,
     config: &Config,
-) -> Result<(Pose, f32), StopReason> {
+) -> Result<(Pose, f32, u64), StopReason> {
     let sample = sample.ok_or(StopReason::OdometryStale)?;
     let age = now
         .since(sample.taken_at)
@@ -286,7 +304,8 @@ fn judge_odometry(
             heading: Angle::radians(sample.heading)?,
         };
         in_range("turn rate", sample.turn_rate, -20.0, 20.0, "rad/s")?;
-        Ok((pose, in_range("speed", sample.speed, -10.0, 10.0, "m/s")?))
+        let speed = in_range("speed", sample.speed, -10.0, 10.0, "m/s")?;
+        Ok((pose, speed, age))
     };
     checked().map_err(|_: crate::quantity::OutOfRange| StopReason::OdometryInvalid)
 }

@@ -55,7 +55,7 @@ fn same_direction(found: f32, expected: f64, tolerance: f64) -> bool {
 // ------------------------------------------------------------- the equations
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(common::cases(2_000))]
 
     /// S1.E1 is as printed, wrapped, with the measured bearing for the camera's half angle.
     #[test]
@@ -514,7 +514,7 @@ fn at(distance: f32, trend: Trend) -> Situation {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(common::cases(2_000))]
 
     //= avoid.INV-10
     //= avoid.INV-11
@@ -716,7 +716,7 @@ fn sees(distance: f32, bearing: f32) -> View<3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1_000))]
+    #![proptest_config(common::cases(1_000))]
 
     /// Any configuration, and any view after any view.
     //= avoid.INV-11

@@ -24,7 +24,7 @@ fn any_twist() -> impl Strategy<Value = Twist> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(common::cases(2_000))]
 
     /// Both wheels carry speed and turn, so each of the two is as exact as both together are
     /// large: that is the scale.

@@ -3,6 +3,8 @@
 //! Every 4097th bit pattern meets every exponent and both signs, and ends the runs of equal low
 //! bits that a power of two would give. `examples/math_exhaustive.rs` leaves none out.
 
+mod common;
+
 use proptest::prelude::*;
 use sidestep::math;
 use sidestep_spec::math as contract;
@@ -81,7 +83,7 @@ fn direction_keeps_its_contract() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4_096))]
+    #![proptest_config(common::cases(4_096))]
 
     //= math.INV-1
     //= math.INV-2

@@ -42,7 +42,7 @@ fn safe(limits: &Limits, speed: i32, clearance: i32) -> bool {
 // ---------------------------------------------------------------- the formulas
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4_000))]
+    #![proptest_config(common::cases(4_000))]
 
     /// Limits are the configuration in integers, rounded to the safe side. The f32 product that
     /// converts them is itself rounded, by one part in ten million.
@@ -328,7 +328,7 @@ fn tick() -> impl Strategy<Value = (f64, i32, Motion)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(common::cases(500))]
 
     /// The theorem, driven: something comes at its greatest speed, the law advises anything, ticks
     /// come at any times up to ε apart. The robot is at rest before the gap closes.
@@ -457,7 +457,7 @@ fn judged_tick(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1_000))]
+    #![proptest_config(common::cases(1_000))]
 
     //= shield.INV-1
     //= shield.INV-4

@@ -48,7 +48,7 @@ fn judged(range: f32, age: u64) -> SonarReading {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4_000))]
+    #![proptest_config(common::cases(4_000))]
 
     //= view.INV-1
     #[test]
@@ -111,7 +111,7 @@ fn heard(range: i32, at: Instant, config: &Config) -> (EchoMemory, Bound) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(common::cases(2_000))]
 
     //= view.INV-2
     //= view.INV-5
@@ -141,7 +141,6 @@ proptest! {
         range in 0..6_000_i32, farther in proptest::option::of(0..20_000_i32),
         later in 0.0_f32..=1.0, age in prop_oneof![Just(0.0_f32), 0.0_f32..=1.0],
     ) {
-        prop_assume!(config.confirm_samples > 1.0);
         // Taken and read within the hold time.
         let hold_time = config.hold_time * 1000.0;
         let age = (age * (1.0 - later) * hold_time) as u64;
@@ -182,7 +181,6 @@ proptest! {
         config in usual_or_any_config(),
         range in 0..6_000_i32, farther in 0..20_000_i32, earlier in 1..500_u64, later in 0..100_u64,
     ) {
-        prop_assume!(config.confirm_samples > 1.0);
         let (mut memory, before) = heard(range, Instant(10_000), &config);
         let after = memory.update(
             Some(farther), Instant(10_000 - earlier), Instant(10_000 + later), &config,
@@ -199,7 +197,6 @@ proptest! {
         config in usual_or_any_config(),
         range in 0..6_000_i32, farther in 0..20_000_i32, looks in 1..10_u64,
     ) {
-        prop_assume!(config.confirm_samples > 1.0);
         prop_assume!(100 * (looks + 1) <= (config.hold_time * 1000.0) as u64);
         let (mut memory, before) = heard(range, Instant(10_000), &config);
         let taken_at = Instant(10_100);
@@ -279,7 +276,7 @@ fn watch<const N: usize>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(500))]
+    #![proptest_config(common::cases(500))]
 
     //= view.INV-2
     //= view.INV-4
@@ -378,7 +375,7 @@ fn a_contact_is_the_nearest_echo() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(common::cases(2_000))]
 
     /// The contact range of a sonar: whatever is in its cone at a range is at least that range,
     /// less the contact range, away from the robot's circle. To a hundredth of a millimetre, which
@@ -447,18 +444,4 @@ fn blind_rings_are_refused() {
     assert_eq!(refused(at(2.1, 0.0, 0.0)), "sonar x");
     assert_eq!(refused(at(0.0, f32::NAN, 0.0)), "sonar y");
     assert_eq!(refused(at(0.0, 0.0, 10.0)), "angle");
-}
-
-/// A configuration without confirmation gives the memory up knowingly (view.INV-3): then one echo
-/// from behind is enough.
-#[test]
-fn one_confirmation_is_none() {
-    let config = Config::new(Parameters {
-        confirm_samples: 1.0,
-        ..preset::PIONEER_3DX
-    })
-    .expect("a configuration");
-    let (mut memory, _) = heard(1_000, Instant(10_000), &config);
-    let now = Instant(10_100);
-    assert_eq!(memory.update(Some(3_000), now, now, &config).range, 3_000);
 }

@@ -206,6 +206,7 @@ fn advice(config: &Config, bytes: &mut Bytes) {
                 heading: bytes.angle(),
             },
             speed: bytes.speed().get(),
+            odometry_age: 0,
             goal: GoalView {
                 heading: bytes.angle(),
                 distance: bytes.length().get(),

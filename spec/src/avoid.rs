@@ -213,8 +213,9 @@ pub fn a4(mode: &str, distance: f64, trend: &str, contact_time: f64, fresh: bool
         return "Stop";
     }
     let receding = trend == "receding";
+    let approaching = trend == "closing" || trend == "unknown";
     match mode {
-        "Cruise" if distance < SAFE && (!receding || distance <= NEAR) => "Maneuver",
+        "Cruise" if distance < SAFE && (approaching || distance <= NEAR) => "Maneuver",
         "Cruise" => "Cruise",
         "Maneuver" if distance < SAFE && (!receding || distance <= NEAR) => "Maneuver",
         "Maneuver" => "Reorient",

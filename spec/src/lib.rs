@@ -9,8 +9,8 @@
 //!   predicates; none writes its own copy.
 //!
 //! Papers: S1 is Budiharto, Santoso, Purwanto, Jazidie, "A New Method of Obstacle Avoidance for
-//! Service Robots in Indoor Environments"; S2 is Budiharto, Purwanto, Jazidie, "Indoor Navigation
-//! using … Bayesian approach". Lengths of S1 and S2 are in cm and speeds in cm/s here, as printed.
+//! Service Robots in Indoor Environments"; S2 is Budiharto, Purwanto, Jazidie, "A
+//! robust obstacle avoidance for service robot using Bayesian approach". Lengths of S1 and S2 are in cm and speeds in cm/s here, as printed.
 
 pub mod arcos;
 pub mod avoid;

@@ -133,7 +133,8 @@ pub fn turn_slew_kept(before: i32, after: i32, acceleration: i32, elapsed_ms: i3
     (before.min(0) - step..=before.max(0) + step).contains(&after)
 }
 
-/// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ d, multiplied by 1000·α.
+/// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ d, multiplied by 1000·α; d is the
+/// clearance less the robot's own way to rest.
 #[must_use]
 pub fn turn_ends_before_contact(
     turn_rate: i32,

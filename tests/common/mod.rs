@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use proptest::array::UniformArrayStrategy;
 use proptest::prelude::*;
 use proptest::sample::select;
+use proptest::test_runner::RngSeed;
 use sidestep::avoid::{ObstacleSpeed, Trend};
 use sidestep::config::{Config, FIELDS, Parameters};
 use sidestep::law::Advice;
@@ -19,6 +20,25 @@ use std::f32::consts::PI;
 
 #[path = "../../fuzz/targets/settings.rs"]
 pub mod settings;
+
+/// How often a property is put to the test: `usual` times, with the same inputs in every run.
+///
+/// `PROPTEST_CASES` counts relative to its usual 256, so 25600 is a hundred times as many of each;
+/// `PROPTEST_RNG_SEED` gives other inputs.
+pub fn cases(usual: u32) -> ProptestConfig {
+    let wanted = ProptestConfig::default();
+    ProptestConfig {
+        cases: (u64::from(usual) * u64::from(wanted.cases) / 256) as u32,
+        rng_seed: match wanted.rng_seed {
+            RngSeed::Random => RngSeed::Fixed(0),
+            fixed => fixed,
+        },
+        // What fails fails again, and says with what.
+        failure_persistence: None,
+        max_global_rejects: 1 << 20,
+        ..wanted
+    }
+}
 
 /// The Pioneer preset.
 pub fn pioneer() -> Config {
@@ -196,7 +216,8 @@ pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
     let clearances = UniformArrayStrategy::<_, [i32; N]>::new(clearances());
     let sonars = (readings, ranges, clearances);
     let obstacle = proptest::option::of(obstacle());
-    let motion = (between(-10.0, 10.0), 0..100_000_u64);
+    let ages = prop_oneof![0..500_u64, 0..5_000_u64];
+    let motion = (between(-10.0, 10.0), 0..100_000_u64, ages);
     (
         pose,
         motion,
@@ -213,6 +234,7 @@ pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
                 heading: pose.1,
             },
             speed: motion.0,
+            odometry_age: motion.2,
             goal: GoalView {
                 heading: goal.0,
                 distance: goal.1,
