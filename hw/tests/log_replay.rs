@@ -226,17 +226,20 @@ fn garbage_is_an_error_that_names_its_line() {
     assert!(message.starts_with("line 1: no header"), "{message}");
 }
 
+/// Something that is done to a header.
+type Change<'a> = &'a dyn Fn(&mut Value);
+
 #[test]
 fn a_header_that_is_not_in_order_is_refused() {
     let bytes = run(&RobotConfig::default());
     let original = values(&bytes);
-    let refusal = |change: &dyn Fn(&mut Value)| {
+    let refusal = |change: Change<'_>| {
         let mut changed = original.clone();
         change(&mut changed[0]);
         let result = log::read(lines(&changed).as_slice()).and_then(|log| replay::log(&log));
         result.expect_err("refused")
     };
-    let cases: [(&dyn Fn(&mut Value), &str); 10] = [
+    let cases: [(Change<'_>, &str); 10] = [
         (
             &|header| header["parameters"]["warp"] = 9.into(),
             "unknown parameter warp",
