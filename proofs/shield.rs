@@ -228,7 +228,7 @@ fn any_advice() -> Advice {
 //= shield.INV-4
 //= shield.INV-5
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(
     kani,

@@ -10,8 +10,13 @@ mod targets;
 /// Pseudo-random inputs per target.
 const INPUTS: u64 = 4_000;
 
-/// A fuzz target's name and what it does.
-const TARGETS: &[(&str, fn(&[u8]))] = &[
+/// What a fuzz target does.
+type Target = fn(&[u8]);
+
+/// The fuzz targets by name.
+const TARGETS: &[(&str, Target)] = &[
+    ("arcos_frame", targets::arcos::frame),
+    ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
 ];
@@ -31,12 +36,12 @@ impl Random {
     /// Up to 600 bytes: random ones, then as many with three of four zero, which leave more of a
     /// world in order.
     fn bytes(&mut self) -> Vec<u8> {
-        let sparse = self.next() % 2 == 0;
+        let sparse = self.next().is_multiple_of(2);
         let length = self.next() % 600;
         (0..length)
             .map(|_| {
                 let byte = self.next();
-                if sparse && byte % 4 != 0 {
+                if sparse && !byte.is_multiple_of(4) {
                     0
                 } else {
                     (byte >> 8) as u8

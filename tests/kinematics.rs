@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use sidestep::kinematics::{DifferentialDrive, Twist, WheelRates, velocity};
 use sidestep::quantity::Angle;
 use sidestep_spec::kinematics as law;
+use std::f32::consts::PI;
 
 /// Any drive there is, with its radius and base.
 fn any_drive() -> impl Strategy<Value = (DifferentialDrive, f32, f32)> {
@@ -129,7 +130,7 @@ proptest! {
     /// S2.E1 and E2, against the reference; the robot does not move sideways, and is as fast as
     /// its speed.
     #[test]
-    fn velocity_is_the_reference(speed in between(-10.0, 10.0), heading in -3.14_f32..3.14) {
+    fn velocity_is_the_reference(speed in between(-10.0, 10.0), heading in -PI..PI) {
         let found = velocity(speed, Angle::radians(heading).expect("an angle"));
         let heading_deg = f64::from(heading).to_degrees();
         let (x, y, _) = law::e1_e3(f64::from(speed), heading_deg, 0.0);

@@ -4,6 +4,7 @@
 //! `fuzz_targets/*.rs` hand them libFuzzer's bytes, `tests/fuzz_corpus.rs` the seed corpus and
 //! pseudo-random ones, so that what the fuzzer runs is also an ordinary test.
 
+pub mod arcos;
 pub mod avoid;
 pub mod bytes;
 pub mod controller;

@@ -229,8 +229,10 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     fn judge_motion(&self, view: &View<N>, command: Command) {
         let limits = self.limits();
         let (speed, turn_rate) = (command.speed(), command.turn_rate());
-        // What the robot may be at, and so what it must have room for.
-        let speed_bound = up(view.speed.abs()).max(self.last.speed());
+        // What the robot may be at: as measured, and gained since, or as told.
+        let age = view.odometry_age.min(limits.reaction_time() as u64) as i32;
+        let gained = (limits.acceleration() * age + 999) / 1000;
+        let speed_bound = (up(view.speed.abs()) + gained.min(1_000)).max(self.last.speed());
         let judged_at = speed.max(speed_bound - limits.speed_gain());
         assert!(shield::judged_at_what_it_may_be(
             speed,
@@ -239,6 +241,10 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             limits.speed_gain()
         ));
         let required = limits.required_clearance(judged_at);
+        let fastest = match speed {
+            0 => speed_bound,
+            _ => speed_bound.max(speed + limits.speed_gain()),
+        };
         for &clearance in &view.clearance {
             assert!(shield::admitted(speed, required, clearance));
             assert!(shield::turn_ends_before_contact(
@@ -246,7 +252,7 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
                 limits.turn_acceleration(),
                 limits.reaction_time(),
                 limits.obstacle_speed(),
-                clearance
+                clearance.saturating_sub(limits.way_to_rest(fastest))
             ));
         }
         if let Some(obstacle) = &view.obstacle {

@@ -70,6 +70,11 @@ pub enum Record {
         /// What the robot was told.
         told: Told,
     },
+    /// The base's counters were set to zero: the odometry frame begins here.
+    Origin {
+        /// Milliseconds since the start.
+        t: u64,
+    },
     /// Something to know.
     Event {
         /// Milliseconds since the start.

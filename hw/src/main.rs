@@ -284,7 +284,11 @@ fn run_base<const N: usize>(
         None,
         &INTERRUPTED,
         &mut status,
-    )?;
+    )
+    .inspect_err(|_| {
+        // Nothing was driven: an empty log would only stand in the way of the next try.
+        let _ = std::fs::remove_file(log);
+    })?;
     if let Some(error) = pilot.log_error() {
         return Err(format!("log {}: not complete: {error}", log.display()).into());
     }

@@ -11,6 +11,7 @@ use sidestep::arcos::BaseParameters;
 use sidestep::avoid::Avoid;
 use sidestep::controller::{Controller, Decision};
 use sidestep::law::Law;
+use sidestep::observation::Observation;
 use sidestep::quantity::{Instant, OutOfRange};
 use sidestep::shield::StopReason;
 use std::collections::{BTreeMap, VecDeque};
@@ -55,13 +56,19 @@ pub struct Pilot<L, const N: usize> {
     log_error: Option<String>,
     header_written: bool,
     events: VecDeque<(u64, String)>,
+    /// Events from before the log began.
+    before: Vec<(u64, String)>,
     last_tick: Option<u64>,
     stop: Option<StopReason>,
     latest: Option<Decision<N>>,
     tally: Tally,
     stops: Vec<StopBegun>,
-    /// The link was lost with the robot in motion: its odometry may not be the one we knew.
+    /// Why there is no link, if there was one.
     lost: Option<String>,
+    /// The base's counters have jumped.
+    position_lost: bool,
+    /// Since when the robot has stood still although it is told to move.
+    disobeys: Option<u64>,
 }
 
 /// The session's settings for a configuration: the base's own limits follow the shield's model.
@@ -126,18 +133,21 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             session: Session::new(settings, 0),
             config,
             goal,
-            base: Base::new(BaseParameters::P3DX_SH, config.heading),
+            base: Base::new(BaseParameters::P3DX_SH, &config),
             controller: Controller::new(config.core, base::ring(&config)?, law, goal)?,
             log,
             log_error: None,
             header_written: false,
             events: VecDeque::new(),
+            before: Vec::new(),
             last_tick: None,
             stop: None,
             latest: None,
             tally: Tally::default(),
             stops: Vec::new(),
             lost: None,
+            position_lost: false,
+            disobeys: None,
         })
     }
 
@@ -149,6 +159,13 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
 
     /// What is to be done with the transport next.
     pub fn poll(&mut self, now: u64) -> Option<Output> {
+        // The promise counts on a command within the reaction time; the rest of it is the base's
+        // delay and the sensors' age. A packet that is late is not waited for.
+        let patience = (self.config.core.reaction_time * 700.0) as u64;
+        let late = |last| now >= last + patience;
+        if self.session.is_ready() && self.last_tick.is_some_and(late) {
+            self.halt(Halt::LinkLost, now);
+        }
         let output = self.session.poll(now);
         self.handle_events(now);
         output
@@ -159,6 +176,16 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             match event {
                 Event::Information { frame, information } => {
                     let observation = self.base.observe(&information, Instant(now));
+                    if self.base.is_lost() && !self.position_lost {
+                        self.position_lost = true;
+                        self.note(
+                            now,
+                            "the robot's counters have jumped: its position is no longer known; \
+                             start again with a new goal"
+                                .to_owned(),
+                        );
+                    }
+                    self.watch_obedience(&observation, now);
                     let decision = self.controller.tick(&observation);
                     self.tick(now, &decision, |t, told| Record::Tick {
                         t,
@@ -169,7 +196,7 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 Event::Connected { robot, parameters } => {
                     // After a lost link the robot is where its counters say, as before.
                     if !self.header_written {
-                        self.base = Base::new(parameters, self.config.heading);
+                        self.base = Base::new(parameters, &self.config);
                         self.begin_log(parameters.subclass);
                     }
                     self.note(
@@ -183,7 +210,11 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 Event::LinkLost(loss) => {
                     self.lost = Some(loss.to_string());
                     self.note(now, format!("link lost: {loss}"));
-                    self.halt(Halt::LinkLost, now);
+                    // Before the log begins nothing has been told to move, and a replay would not
+                    // know of this stop.
+                    if self.header_written {
+                        self.halt(Halt::LinkLost, now);
+                    }
                 }
                 Event::Rejected(rejection) => {
                     self.tally.rejected += 1;
@@ -195,6 +226,10 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 Event::Waiting(hindrance) => self.note(now, format!("waiting: {hindrance}")),
                 Event::Ready { resumed } => {
                     self.lost = None;
+                    if !resumed {
+                        self.base.restart();
+                        self.write(&Record::Origin { t: now });
+                    }
                     self.note(
                         now,
                         if resumed { "ready again" } else { "ready" }.to_owned(),
@@ -215,6 +250,30 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 }
                 Event::Closed => self.note(now, "closed".to_owned()),
             }
+        }
+    }
+
+    /// Says so when the robot stands still although it is told to move: commands may not arrive.
+    fn watch_obedience(&mut self, observation: &Observation<N>, now: u64) {
+        let told = self
+            .latest
+            .as_ref()
+            .is_some_and(|decision| decision.command.speed() > 20);
+        let still = observation
+            .odometry
+            .is_some_and(|odometry| odometry.speed.abs() < 0.005);
+        if !(told && still) {
+            self.disobeys = None;
+            return;
+        }
+        let since = *self.disobeys.get_or_insert(now);
+        if since != u64::MAX && now >= since + 1000 {
+            // Said once, until it moves again.
+            self.disobeys = Some(u64::MAX);
+            self.note(
+                now,
+                "the robot is told to move and stands still: do commands arrive?".to_owned(),
+            );
         }
     }
 
@@ -292,8 +351,8 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             let header = Header::new(&self.config, subclass, [self.goal.x, self.goal.y]);
             self.write(&header);
             // What happened before the robot said who it is.
-            for (t, text) in std::mem::take(&mut self.events) {
-                self.note(t, text);
+            for (t, text) in std::mem::take(&mut self.before) {
+                self.write(&Record::Event { t, text });
             }
         }
     }
@@ -304,6 +363,8 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 t,
                 text: text.clone(),
             });
+        } else {
+            self.before.push((t, text.clone()));
         }
         self.events.push_back((t, text));
     }

@@ -43,7 +43,7 @@ fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, Stri
         .ok_or_else(|| format!("line 1: unknown subclass {:?}", log.header.subclass))?;
     let goal = log.header.goal.map(|coordinate| coordinate as f32);
     let ring = base::ring::<N>(config).map_err(|error| format!("line 1: {error}"))?;
-    let mut base = Base::<N>::new(parameters, config.heading);
+    let mut base = Base::<N>::new(parameters, config);
     let mut controller = Controller::new(
         config.core,
         ring,
@@ -68,6 +68,10 @@ fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, Stri
             }
             Record::Halt { t, reason, told } => {
                 (controller.halt((*reason).into(), Instant(*t)), told)
+            }
+            Record::Origin { .. } => {
+                base.restart();
+                continue;
             }
             Record::Event { .. } => continue,
         };
@@ -165,7 +169,10 @@ pub fn table(
                     b if (-90.5..0.0).contains(&b) => 2,
                     _ => continue,
                 };
-                least[third] = least[third].min(*range);
+                // A range that is no number makes its whole third one.
+                if range.is_nan() || *range < least[third] {
+                    least[third] = *range;
+                }
             }
             least
         }),

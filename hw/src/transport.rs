@@ -255,3 +255,107 @@ impl Transport for Port<TcpStream> {
         &self.name
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::TcpListener;
+
+    /// Reads until something comes.
+    fn read(transport: &mut dyn Transport) -> Result<Vec<u8>, TransportError> {
+        let mut buffer = [0; 64];
+        for _ in 0..200 {
+            let count = transport.read(&mut buffer)?;
+            if count > 0 {
+                return Ok(buffer[..count].to_vec());
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    #[test]
+    fn a_connection_carries_bytes_and_says_when_it_ends() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let name = format!("tcp:{}", listener.local_addr().unwrap());
+        let mut transport = open(&name).unwrap();
+        let (mut peer, _) = listener.accept().unwrap();
+        assert!(!transport.has_baud());
+        assert_eq!(transport.describe(), name);
+        assert_eq!(transport.read(&mut [0; 8]).unwrap(), 0);
+
+        peer.write_all(b"robot").unwrap();
+        assert_eq!(read(&mut *transport).unwrap(), b"robot");
+        transport.write_all(b"host").unwrap();
+        let mut heard = [0; 4];
+        peer.read_exact(&mut heard).unwrap();
+        assert_eq!(&heard, b"host");
+
+        peer.write_all(b"stale").unwrap();
+        std::thread::sleep(READ_TIMEOUT);
+        transport.discard_input().unwrap();
+        transport.set_baud(38_400).unwrap();
+        peer.write_all(b"fresh").unwrap();
+        assert_eq!(read(&mut *transport).unwrap(), b"fresh");
+
+        drop(peer);
+        let error = read(&mut *transport).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            format!("{name}: cannot read: closed by the peer")
+        );
+    }
+
+    #[test]
+    fn a_port_that_is_not_there_is_named() {
+        let free = TcpListener::bind("127.0.0.1:0")
+            .unwrap()
+            .local_addr()
+            .unwrap();
+        for port in [&*format!("tcp:{free}"), "tcp:[::1", "/dev/no-such-port"] {
+            let error = open(port).err().unwrap().to_string();
+            assert!(error.starts_with(&format!("{port}: cannot ")), "{error}");
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_serial_port_carries_bytes_and_says_when_it_vanishes() {
+        use serialport::TTYPort;
+
+        let (mut peer, port) = TTYPort::pair().unwrap();
+        let name = port.name().unwrap();
+        drop(port);
+        peer.set_timeout(READ_TIMEOUT).unwrap();
+        let mut transport = open(&name).unwrap();
+        assert!(transport.has_baud());
+        for baud in [38_400, 115_200, 9600] {
+            transport.set_baud(baud).unwrap();
+        }
+
+        // Not a byte is changed on the way, line ends and control characters included.
+        let all: Vec<u8> = (0..=255).collect();
+        transport.write_all(&all).unwrap();
+        let mut heard = vec![0; 256];
+        peer.read_exact(&mut heard).unwrap();
+        assert_eq!(heard, all);
+        peer.write_all(&all).unwrap();
+        let mut heard = Vec::new();
+        while heard.len() < 256 {
+            heard.extend(read(&mut *transport).unwrap());
+        }
+        assert_eq!(heard, all);
+
+        peer.write_all(b"stale").unwrap();
+        transport.discard_input().unwrap();
+        peer.write_all(b"fresh").unwrap();
+        assert_eq!(read(&mut *transport).unwrap(), b"fresh");
+
+        drop(peer);
+        let error = read(&mut *transport).unwrap_err().to_string();
+        assert!(
+            error.starts_with(&format!("{name}: cannot read: ")),
+            "{error}"
+        );
+        assert!(transport.write_all(b"host").is_err());
+    }
+}

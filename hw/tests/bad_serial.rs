@@ -12,12 +12,15 @@
 mod common;
 
 use common::{Mangle, Random, Rig, inconsiderate, moving_contacts, seeds};
-use sidestep::arcos::{HostCommand, MAX_FRAME, Receiver, command};
+use sidestep::arcos::{
+    HostCommand, Identity, MAX_FRAME, Receiver, SonarReading, SonarReadings, StandardInformation,
+    Tail, command,
+};
 use sidestep::avoid::Avoid;
 use sidestep::shield::StopReason;
 use sidestep_hw::config::RobotConfig;
 use sidestep_hw::log::{Log, Record};
-use sidestep_hw::pilot::settings;
+use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_sim::robot::{ArcosRobot, BAUDS, Session};
 use sidestep_sim::scenario::Scenario;
 use sidestep_sim::{STEP_MS, World};
@@ -174,6 +177,8 @@ fn damaged_bytes_are_rejected_and_nobody_is_touched_for_it() {
                 }
             );
             assert!(arrived > runs / 2, "{damage:?}: {arrived} of {runs}");
+            // What comes late from the robot is not waited for: only late commands may be excused.
+            assert!(on_the_way_to_the_robot || excused == 0, "{excused}");
             // What does not arrive cannot be rejected, and the robot does not tell what it rejects.
             let seen = !on_the_way_to_the_robot && !matches!(damage, Damage::Loss);
             assert_eq!(rejected > 0, seen, "{damage:?}: {rejected} rejections");
@@ -207,6 +212,7 @@ fn a_robot_that_is_not_heard_is_told_to_stop() {
         let cut_at = rig.now();
         assert!(rig.run_until(cut_at + timeout + DELAY + BRAKING, Rig::at_rest));
         assert!(rig.now() < cut_at + WATCHDOG, "that was the watchdog");
+        rig.wait(timeout);
         assert_eq!(latest_stop(&rig), Some(StopReason::LinkLost));
         assert!(rig.was_shown("link lost: no valid information packet for"));
         assert_eq!(rig.pilot.tally().stops.get("link lost"), Some(&1));
@@ -292,6 +298,18 @@ fn a_wrong_baud_rate_is_reported_and_moves_nothing() {
     rig.pilot.close(rig.now());
     // Without a robot there is nothing to log.
     assert!(rig.log.bytes().is_empty());
+}
+
+/// Nobody is there at first: the log begins where the robot answers, and replays from there.
+#[test]
+fn a_robot_that_answers_late_is_driven_all_the_same() {
+    let mut rig = rig(&open_floor());
+    rig.to_robot = cut();
+    rig.wait(5000);
+    assert!(rig.was_shown("no robot answers"), "{:?}", rig.events);
+    rig.to_robot = common::good_line();
+    assert!(rig.drive(60_000), "{:?}", rig.events);
+    rig.finish();
 }
 
 /// Somebody else's session, with the robot under way: it is closed, which stops the robot, and the
@@ -406,4 +424,59 @@ fn a_host_that_hangs_is_stopped_by_the_watchdog_and_not_before() {
     // A loop that comes back finds what was sent meanwhile, and drives on.
     assert!(rig.drive(rig.now() + 60_000), "{:?}", rig.events);
     rig.finish();
+}
+
+/// A robot with motors and sonars on from the start, which answers after the host has given up once.
+#[test]
+fn a_link_lost_before_the_log_began_is_no_parting() {
+    let config = RobotConfig::default();
+    let shared = common::SharedLog::default();
+    let mut pilot = Pilot::<Avoid, 16>::new(
+        config,
+        [4.0, 0.0],
+        settings(&config, false, None),
+        Box::new(shared.clone()),
+    )
+    .unwrap();
+    let mut now = 0;
+    while pilot.lost().is_none() {
+        now += 10;
+        while pilot.poll(now).is_some() {}
+    }
+    let mut buffer = [0; MAX_FRAME];
+    let mut said = vec![frame(HostCommand::plain(0)), frame(HostCommand::plain(1))];
+    let identity = Identity {
+        name: b"late",
+        class: b"Pioneer",
+        subclass: b"p3dx-sh",
+    };
+    said.push(identity.encode(&mut buffer).unwrap().as_bytes().to_vec());
+    let mut sonars = SonarReadings::new();
+    for index in 0..16 {
+        sonars.push(SonarReading { index, range: 5000 });
+    }
+    let information = StandardInformation {
+        kind: StandardInformation::MOTORS_STOPPED,
+        x: 0,
+        y: 0,
+        heading: 0,
+        left_velocity: 0,
+        right_velocity: 0,
+        battery_decivolts: 129,
+        stalls_and_bumpers: 0,
+        control: 0,
+        flags: 0x1F,
+        compass: 0,
+        sonars,
+        tail: Tail::standard(129, 0),
+    };
+    let sip = information.encode(&mut buffer).unwrap().as_bytes().to_vec();
+    said.extend(std::iter::repeat_n(sip, 10));
+    for bytes in said {
+        now += 100;
+        pilot.receive(&bytes, now);
+        while pilot.poll(now).is_some() {}
+    }
+    let log = sidestep_hw::log::read(shared.bytes().as_slice()).unwrap();
+    assert_eq!(sidestep_hw::replay::log(&log).unwrap().parting, None);
 }

@@ -209,7 +209,7 @@ fn last_stop(log: &log::Log) -> Option<&str> {
         .rev()
         .find_map(|(_, record)| match record {
             Record::Tick { told, .. } | Record::Halt { told, .. } => Some(told),
-            Record::Event { .. } => None,
+            Record::Origin { .. } | Record::Event { .. } => None,
         });
     told.and_then(|told| told.stop.as_deref())
 }
@@ -652,6 +652,68 @@ fn a_port_that_vanishes_is_reported_and_tried_again() {
         |(_, record)| matches!(record, Record::Event { text, .. } if text.contains("link lost")),
     );
     assert_eq!(lost.count(), 2);
+}
+
+/// Starts the program, reads what it says up to a line with `wanted` in it, and looks away.
+fn start_and_look_away(arguments: &[&str], wanted: &str) -> Running {
+    let mut child = sidestep(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    assert!(lines.any(|line| line.unwrap().contains(wanted)));
+    Running {
+        child,
+        lines: Arc::default(),
+    }
+}
+
+/// Whoever watches may stop watching (`sidestep … | head`, a terminal that is closed): the robot is
+/// driven on, or stopped, as ever.
+#[test]
+fn a_robot_is_not_let_go_of_when_nobody_looks() {
+    let folder = Folder::new();
+    let config = folder.config();
+    for (name, goal, signal, code) in [
+        ("arrives", "0.5,0", None, 0),
+        ("stopped", "100,0", Some("HUP"), 2),
+    ] {
+        let log = folder.path(&format!("{name}.jsonl"));
+        let (_robot, port) = emulator("127.0.0.1:0");
+        let mut host = start_and_look_away(
+            &[
+                "run",
+                "--port",
+                &port,
+                "--config",
+                text(&config),
+                "--goal",
+                goal,
+                "--log",
+                text(&log),
+            ],
+            "cruise",
+        );
+        if let Some(signal) = signal {
+            std::thread::sleep(Duration::from_secs(1));
+            host.signal(signal);
+        }
+        assert_eq!(host.wait().code(), Some(code), "{name}");
+        let log = assert_replays(&log);
+        assert_eq!(last_stop(&log), Some("operator"), "{name}");
+    }
+    let arguments = [
+        "demo",
+        "fig12-from-side",
+        "--speed",
+        "10",
+        "--out",
+        text(&folder.0),
+    ];
+    let mut demo = start_and_look_away(&arguments, "cruise");
+    assert_eq!(demo.wait().code(), Some(0));
+    assert!(folder.path("fig12-from-side-001/picture.svg").exists());
 }
 
 #[test]

@@ -184,6 +184,8 @@ struct Contacts {
     runs: u32,
     arrived: u32,
     travelled: f64,
+    /// Least clearance at any time, m; as deep as a person ever walked into the robot.
+    nearest: f64,
 }
 
 /// How long before a contact a person's speed matters, ms: longer than reacting and braking take.
@@ -196,7 +198,10 @@ fn drive_among(path: &Path) -> Contacts {
     let promised_speed = f64::from(config.core.obstacle_speed_max);
     let mut knobs = Knobs::default();
     knobs.sonar_faults.dropout = 0.1;
-    let mut contacts = Contacts::default();
+    let mut contacts = Contacts {
+        nearest: f64::INFINITY,
+        ..Contacts::default()
+    };
     let mut start = 0.0;
     while let Ok(mut scenario) = Scenario::hotel(path, start, &knobs) {
         scenario.time_limit_ms = scenario.time_limit_ms.min(60_000);
@@ -208,6 +213,7 @@ fn drive_among(path: &Path) -> Contacts {
         let mut moving = [0; 3];
         while rig.now() < scenario.time_limit_ms && rig.pilot.tally().arrived.is_none() {
             rig.step();
+            contacts.nearest = contacts.nearest.min(rig.simulation.clearance());
             let base = rig.simulation.robot().base();
             let radius = base.footprint().radius;
             for (i, person) in rig.simulation.world().people().iter().enumerate() {
@@ -288,6 +294,7 @@ fn people_walk_round_the_robot(text: &str) -> [Contacts; 2] {
     for contacts in [recorded, slowed] {
         assert_eq!(contacts.promised, 0, "contacts within the promise");
         assert!(contacts.travelled > 0.0, "the robot never moved");
+        assert!(contacts.nearest < 1.0, "nobody ever came near");
     }
     assert_eq!(slowed.too_fast, 0, "everybody is slow here");
     [recorded, slowed]
@@ -312,11 +319,7 @@ fn made_up_people() -> String {
 
 #[test]
 fn made_up_people_walk_round_the_robot() {
-    let [recorded, slowed] = people_walk_round_the_robot(&made_up_people());
-    assert!(recorded.runs > 0 && slowed.runs > 0);
-    // They walk straight through where the robot is: one that nobody touched was not among them.
-    assert!(recorded.at_rest + recorded.too_fast > 0);
-    assert!(slowed.at_rest > 0);
+    people_walk_round_the_robot(&made_up_people());
 }
 
 #[test]
@@ -362,7 +365,7 @@ struct Packets {
 /// Runs every packet through the controller, as fast as they came: ten a second.
 fn tick_on_every_packet(writes: &[Vec<u8>]) -> Packets {
     let config = RobotConfig::default();
-    let mut base = Base::<16>::new(BaseParameters::P3DX_SH, config.heading);
+    let mut base = Base::<16>::new(BaseParameters::P3DX_SH, &config);
     let ring = base::ring::<16>(&config).unwrap();
     let law = Avoid::new(config.core);
     let mut controller = Controller::new(config.core, ring, law, Vector2::new(4.0, 0.0)).unwrap();
@@ -376,7 +379,7 @@ fn tick_on_every_packet(writes: &[Vec<u8>]) -> Packets {
             && let Ok(identity) = Identity::decode(frame)
         {
             let parameters = BaseParameters::for_subclass(identity.subclass);
-            base = Base::new(parameters.expect("a base that is known"), config.heading);
+            base = Base::new(parameters.expect("a base that is known"), &config);
         }
         if !StandardInformation::is_kind(frame.number()) {
             continue;

@@ -68,7 +68,13 @@ impl Peer {
             (Self::OPEN, command::SONAR) => self.sonars = on,
             (Self::OPEN, command::SETO) => self.x = 0,
             (Self::OPEN, command::CONFIG) => answer.extend(self.configuration()),
-            (Self::OPEN, command::HOSTBAUD) if self.obeys_baud => self.baud = Some(38_400),
+            (Self::OPEN, command::HOSTBAUD) => {
+                // What was on its way is no sign of the new rate.
+                answer.extend(self.sip());
+                if self.obeys_baud {
+                    self.baud = Some(38_400);
+                }
+            }
             (Self::OPEN, _) => {}
             (2, command::OPEN) => {
                 self.synced = Self::OPEN;
@@ -334,7 +340,7 @@ fn a_robot_is_greeted_opened_and_made_ready() {
     assert_eq!(rig.peer.heard[last + 1].2, Some(-10));
 }
 
-//= arcos.INV-15
+// Session rule 1.
 #[test]
 fn no_motion_is_commanded_before_the_robot_is_ready() {
     let mut rig = Rig::over_tcp();
@@ -384,6 +390,16 @@ fn a_robot_that_does_not_follow_a_change_of_baud_rate_is_followed() {
         kept: 9600
     }));
     assert_eq!(rig.session.baud(), Some(9600));
+
+    rig.peer.dead = true;
+    rig.run(1000);
+    rig.peer.dead = false;
+    rig.ready();
+    assert_eq!(
+        rig.peer.count(command::HOSTBAUD),
+        1,
+        "it is not asked again"
+    );
 }
 
 #[test]
@@ -427,7 +443,7 @@ fn units_are_never_guessed() {
     );
 }
 
-//= arcos.INV-17
+// Session rule 3.
 #[test]
 fn a_lost_link_stops_the_robot_and_is_mended() {
     let mut rig = Rig::over_tcp();
@@ -463,7 +479,7 @@ fn a_robot_that_is_heard_no_more_but_may_still_hear_is_told_to_stop() {
     assert!(!rig.peer.motors);
 }
 
-//= arcos.INV-16
+// Session rule 2.
 #[test]
 fn a_control_loop_that_hangs_feeds_nothing_to_the_watchdog() {
     let mut rig = Rig::over_tcp();
@@ -477,7 +493,7 @@ fn a_control_loop_that_hangs_feeds_nothing_to_the_watchdog() {
     assert_eq!(lost(&events), None);
 }
 
-//= arcos.INV-17
+// Session rule 3.
 #[test]
 fn a_command_given_before_the_link_was_lost_is_not_sent_after() {
     let mut rig = Rig::over_tcp();
@@ -535,7 +551,7 @@ fn a_bad_checksum_is_reported_and_survived() {
 }
 
 //= arcos.INV-9
-//= arcos.INV-17
+// Session rule 3.
 #[test]
 fn a_malformed_sip_is_reported_and_keeps_no_link_alive() {
     let mut rig = Rig::over_tcp();
@@ -564,11 +580,9 @@ fn a_robot_that_was_disabled_stays_so_until_it_is_enabled() {
     rig.peer.e_stop = false;
     let before = rig.peer.heard.len();
     rig.run(2000);
-    assert!(
-        rig.peer.heard[before..]
-            .iter()
-            .all(|heard| heard.1 == command::PULSE)
-    );
+    let heard = &rig.peer.heard[before..];
+    assert!(heard.len() >= 19, "the loop lives, and the watchdog is fed");
+    assert!(heard.iter().all(|heard| heard.1 == command::PULSE));
     rig.session.enable(rig.now);
     let events = rig.ready();
     assert!(events.contains(&Event::Ready { resumed: true }));
@@ -620,7 +634,7 @@ fn a_session_closed_while_greeting_sends_no_close() {
 }
 
 /// Any bytes at any time: no panic, and no motion unless the robot is ready.
-//= arcos.INV-15
+// Session rule 1.
 #[test]
 fn no_input_brings_a_session_to_move_a_robot_that_is_not_ready() {
     let mut state = 1_u64;

@@ -39,6 +39,22 @@ pub fn begins_with_frame(bytes: &[u8]) -> bool {
         && is_frame(&bytes[..usize::from(bytes[2]) + 3])
 }
 
+/// arcos.INV-2: whether a frame found in `bytes` is their beginning, and its arguments are all of it
+/// but five bytes of frame and one of number.
+#[must_use]
+pub fn is_view(bytes: &[u8], frame: &[u8], arguments: &[u8]) -> bool {
+    bytes.starts_with(frame)
+        && frame.len() >= 6
+        && frame[4..].starts_with(arguments)
+        && frame.len() == arguments.len() + 6
+}
+
+/// arcos.INV-3: whether `bytes` are a frame with this number and these arguments.
+#[must_use]
+pub fn is_frame_of(bytes: &[u8], number: u8, arguments: &[u8]) -> bool {
+    is_frame(bytes) && bytes[3] == number && bytes[4..bytes.len() - 2] == *arguments
+}
+
 /// arcos.INV-4: whether every frame in `stream` that begins before `held` was delivered or lies
 /// under one that was. `delivered` holds the place and length of each frame delivered, in order.
 #[must_use]
@@ -71,6 +87,12 @@ pub fn all_bytes_are_accounted_for(
     held: usize,
 ) -> bool {
     taken == delivered + skipped + held && held < 252
+}
+
+/// arcos.INV-6: whether a frame that was decoded and encoded again is the same.
+#[must_use]
+pub fn is_unchanged(before: &[u8], after: &[u8]) -> bool {
+    before == after
 }
 
 /// arcos.INV-7: whether an integer argument's three bytes mean `value`.
@@ -151,4 +173,15 @@ pub fn is_text(bytes: &[u8]) -> bool {
         place += 1;
     }
     true
+}
+
+/// arcos.INV-10: whether a SIP's arguments hold these words at their places: x, y, heading, left and
+/// right wheel speed, control, flags.
+#[must_use]
+pub fn holds_words(arguments: &[u8], words: [u16; 7]) -> bool {
+    let places = [0, 2, 4, 6, 8, 13, 15];
+    arguments.len() >= 19
+        && places.iter().zip(words).all(|(&place, word)| {
+            u16::from(arguments[place]) + 256 * u16::from(arguments[place + 1]) == word
+        })
 }

@@ -66,17 +66,19 @@ impl<const LONGEST: usize> BoundedReceiver<LONGEST> {
         }
     }
 
-    /// The next frame, taking from `input` no more than it needs. `None` means that `input` is used
-    /// up: all that was in it has been delivered, skipped or kept as the beginning of a frame.
+    /// The next frame. `None` means that `input` is used up: all that was in it has been delivered,
+    /// skipped or kept as the beginning of a frame.
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Frame<'_>> {
-        // Each turn consumes a byte of `input` or of the buffer.
+        // Each turn takes bytes from `input` or skips one of those held.
         let length = loop {
-            match Frame::new_checked(self.buffer.get(self.start..self.end).unwrap_or_default()) {
+            let held = self.buffer.get(self.start..self.end).unwrap_or_default();
+            match Frame::new_checked(held) {
                 Ok(frame) => break frame.as_bytes().len(),
-                Err(FrameError::Truncated) if self.end - self.start < LONGEST => {
-                    let (byte, rest) = input.split_first()?;
-                    *input = rest;
-                    self.append(*byte);
+                Err(FrameError::Truncated) if held.len() < LONGEST => {
+                    if input.is_empty() {
+                        return None;
+                    }
+                    self.fill(input);
                 }
                 Err(error) => {
                     if matches!(error, FrameError::Checksum { .. }) {
@@ -111,15 +113,17 @@ impl<const LONGEST: usize> BoundedReceiver<LONGEST> {
         self.reception.skipped_bytes = self.reception.skipped_bytes.saturating_add(1);
     }
 
-    fn append(&mut self, byte: u8) {
-        if self.end == LONGEST {
-            self.buffer.copy_within(self.start.., 0);
-            self.end -= self.start;
-            self.start = 0;
+    /// Moves the bytes held to the front and as many of `input` behind them as there is room for.
+    fn fill(&mut self, input: &mut &[u8]) {
+        self.buffer.copy_within(self.start..self.end, 0);
+        self.end -= self.start;
+        self.start = 0;
+        let free = self.buffer.get_mut(self.end..).unwrap_or_default();
+        let (taken, rest) = input.split_at(input.len().min(free.len()));
+        if let Some(room) = free.get_mut(..taken.len()) {
+            room.copy_from_slice(taken);
         }
-        if let Some(slot) = self.buffer.get_mut(self.end) {
-            *slot = byte;
-            self.end += 1;
-        }
+        self.end += taken.len();
+        *input = rest;
     }
 }

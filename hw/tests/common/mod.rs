@@ -113,7 +113,7 @@ impl Write for SharedLog {
 
 /// Decisions in a log: ticks, and stops that no packet shows.
 pub fn decisions(log: &Log) -> u64 {
-    let decided = |record: &Record| !matches!(record, Record::Event { .. });
+    let decided = |record: &Record| matches!(record, Record::Tick { .. } | Record::Halt { .. });
     log.records
         .iter()
         .filter(|(_, record)| decided(record))
