@@ -179,6 +179,7 @@ pub fn any_view() -> View<1> {
                     value: any_speed(),
                     saturated: kani::any(),
                 },
+                seen_now: kani::any(),
                 visible: kani::any(),
             })
         } else {

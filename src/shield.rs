@@ -389,7 +389,7 @@ impl Limits {
                 speed: 0,
                 judged_at,
                 required,
-                limit: Some(Limit::Clearance { sonar: room.sonar }),
+                limit: (advised > 0).then_some(Limit::Clearance { sonar: room.sonar }),
             }
         }
     }
@@ -620,8 +620,11 @@ impl Shield {
         let speed_bound = self.speed_bound(view);
         let (speed, limit) = if self.stop.is_none() {
             let advised = (advice.speed * 1000.0) as i32;
+            // What is out of sight does not make the robot faster (ER-X1).
+            let unseen = view.obstacle.is_some_and(|obstacle| !obstacle.seen_now);
+            let gaining = if unseen { 0 } else { elapsed };
             let admission =
-                limits.admissible_speed(self.last.speed, advised, elapsed, speed_bound, room);
+                limits.admissible_speed(self.last.speed, advised, gaining, speed_bound, room);
             (admission.speed, admission.limit)
         } else {
             (0, None)

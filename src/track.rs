@@ -26,6 +26,8 @@ pub struct Obstacle {
     pub trend: Trend,
     /// Estimate of its speed: from a camera by S1 E3 if one saw it, else how fast it comes nearer.
     pub speed: ObstacleSpeed,
+    /// A sonar saw it in this tick.
+    pub seen_now: bool,
     /// It was seen within the greatest age of a sonar reading, not only remembered.
     pub visible: bool,
 }
@@ -152,6 +154,7 @@ impl Track {
             position: self.position,
             trend,
             speed: estimate,
+            seen_now: self.seen == now,
             visible,
         }
     }

@@ -235,10 +235,18 @@ impl EchoMemory {
             let age = to.since(from).unwrap_or(10_000).min(10_000) as i32;
             (closing * age + 999) / 1000
         };
+        // A reading from before the echo that is held says nothing of what came after it.
+        let since = |old: &Held| {
+            if taken_at < old.seen {
+                0
+            } else {
+                way(old.seen, taken_at)
+            }
+        };
         self.held = match (self.held, measured) {
             // An echo from farther away than the same thing can have gone is another thing's: it
             // counts only when it keeps coming. Any other echo counts at once.
-            (Some(old), Some(range)) if range > old.range + way(old.seen, taken_at) + SCATTER => {
+            (Some(old), Some(range)) if range > old.range + since(&old) + SCATTER => {
                 let farther = old.farther + u32::from(taken_at > old.counted);
                 let gone = farther >= config.confirm_samples as u32;
                 let expired = now.since(old.seen).is_none_or(|age| age > hold_time);

@@ -711,6 +711,7 @@ fn sees(distance: f32, bearing: f32) -> View<3> {
             saturated: false,
         },
         visible: true,
+        seen_now: true,
     });
     view
 }

@@ -174,6 +174,7 @@ fn any_obstacle(bytes: &mut Bytes) -> Obstacle {
             saturated: bytes.truth(),
         },
         visible: bytes.truth(),
+        seen_now: bytes.truth(),
     }
 }
 

@@ -232,7 +232,7 @@ fn no_law_at_all_can_touch_anybody() {
 fn without_the_shield(scenario: &Scenario, config: &RobotConfig) -> (Outcome, bool) {
     let mut simulation = scenario.simulate().unwrap();
     let mut session = Session::new(settings(config, false, None), 0);
-    let mut base = Base::<16>::new(BaseParameters::P3DX_SH, &config);
+    let mut base = Base::<16>::new(BaseParameters::P3DX_SH, config);
     let ring = base::ring::<16>(config).unwrap();
     let mut memory = Memory::<16>::default();
     let mut law = Avoid::new(config.core);

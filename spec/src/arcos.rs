@@ -109,7 +109,7 @@ pub fn is_integer_argument(value: i32, bytes: [u8; 3]) -> bool {
 /// arcos.INV-7: whether the protocol has an encoding for `value`.
 #[must_use]
 pub fn is_integer_encodable(value: i32) -> bool {
-    -65_535 <= value && value <= 65_535
+    (-65_535..=65_535).contains(&value)
 }
 
 /// arcos.INV-8 and arcos.INV-9: whether what follows the packet type is that of a SIP.
@@ -136,14 +136,14 @@ pub fn is_information(kind: u8, arguments: &[u8]) -> bool {
 #[must_use]
 pub fn is_shortest_delta(previous: u16, current: u16, delta: i16) -> bool {
     let remainder = (i32::from(current) - i32::from(previous) - i32::from(delta)) % 32_768;
-    remainder == 0 && -16_384 <= delta && delta < 16_384
+    remainder == 0 && (-16_384..16_384).contains(&delta)
 }
 
 /// arcos.INV-12: whether a position moved no further than one SIP can move it.
 #[must_use]
 pub fn is_one_step(before: i64, after: i64) -> bool {
     let moved = i128::from(after) - i128::from(before);
-    -16_384 <= moved && moved < 16_384
+    (-16_384..16_384).contains(&moved)
 }
 
 /// arcos.INV-13: whether `heading` is what a compass byte says to hosts of either convention.

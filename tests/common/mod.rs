@@ -187,6 +187,7 @@ pub fn obstacle() -> impl Strategy<Value = Obstacle> {
                 trend,
                 speed: ObstacleSpeed { value, saturated },
                 visible,
+                seen_now: visible,
             }
         },
     )
