@@ -286,7 +286,7 @@ pub fn any_law_is_shielded() {
 }
 
 /// Turn rates keep their limit, gain no more than the base can, and end before contact, for any
-/// greatest turn rate, any advice and any clearance; otherwise the Pioneer preset.
+/// advice, any clearance and any turn before; Pioneer preset.
 //= shield.INV-1
 //= shield.INV-6
 //= shield.INV-12
@@ -294,7 +294,7 @@ pub fn any_law_is_shielded() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn turn_rate_is_limited() {
-    let limits = limits_with(|p| p.turn_rate_max = kani::any());
+    let limits = pioneer();
     let last = any_in(-limits.turn_rate_max(), limits.turn_rate_max());
     let elapsed = any_in(0, limits.reaction_time());
     let clearance = kani::any();

@@ -266,25 +266,3 @@ fn unknown_names_and_bad_knobs_are_refused() {
     assert!(Scenario::named("lab", &knobs).unwrap().simulate().is_err());
     assert!(named("lab").randomised(0, 0.0).is_err());
 }
-
-/// Run it with `--release --ignored --nocapture`: a thousand half minutes take about a minute at
-/// most.
-#[test]
-#[ignore = "a measurement"]
-fn a_thousand_seeds() {
-    for name in NAMES {
-        let begun = std::time::Instant::now();
-        for seed in 0..1000 {
-            let mut simulation = named(name)
-                .randomised(seed, 0.8)
-                .unwrap()
-                .simulate()
-                .unwrap();
-            drive(&mut simulation, 30_000);
-        }
-        println!(
-            "{name}: 1000 seeds of 30 s in {:.1} s",
-            begun.elapsed().as_secs_f64()
-        );
-    }
-}
