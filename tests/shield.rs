@@ -5,14 +5,16 @@
 
 mod common;
 
-use common::{advice, between, config, settings, usual_or_any_config, view};
+use common::{advice, between, config, in_order, pioneer, settings, usual_or_any_config, view};
 use proptest::prelude::*;
+use sidestep::avoid::{ObstacleSpeed, Trend};
 use sidestep::config::Config;
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
-use sidestep::quantity::Instant;
+use sidestep::quantity::{Angle, Instant, Length, Speed};
 use sidestep::shield::{Limits, Room, Shield, StopReason, Verdict, greatest};
-use sidestep::view::View;
+use sidestep::track::Obstacle;
+use sidestep::view::{Memory, View};
 use sidestep_spec::shield as promise;
 
 /// A share of a whole, its ends more often than by chance.
@@ -382,7 +384,7 @@ fn tick_in_order() -> impl Strategy<Value = (View<3>, u64, Advice)> {
         view.base.emergency_stop = false;
         for (reading, range) in view.sonar.iter_mut().zip(&mut view.range) {
             if !matches!(reading, SonarReading::Echo(_) | SonarReading::NoEcho(_)) {
-                *reading = SonarReading::NoEcho(sidestep::quantity::Length::MAX);
+                *reading = SonarReading::NoEcho(Length::MAX);
             }
             *range += 1_000;
         }
@@ -513,6 +515,52 @@ proptest! {
             last = (verdict.command.speed(), verdict.command.turn_rate());
         }
     }
+}
+
+/// A stop for want of time ends when there is the resume clearance on top of what it demands, for
+/// as many ticks in a row as it takes.
+//= shield.INV-8
+#[test]
+fn time_to_contact_has_hysteresis() {
+    let config = pioneer();
+    let ring = settings::ring::<3>(&config);
+    let mut shield = Shield::new(&config);
+    let mut now = 10_000;
+    let mut stop_at = |distance: f32| {
+        now += 100;
+        let observation = in_order(now, [5.0; 3]);
+        let view = Memory::default().update(&observation, [5.0, 0.0].into(), &ring, &config);
+        let mut view = view.expect("odometry");
+        view.obstacle = Some(Obstacle {
+            distance: Length::metres(distance).expect("a length"),
+            contact_range: 100,
+            direction: Angle::ZERO,
+            position: [distance, 0.0].into(),
+            trend: Trend::Closing,
+            speed: ObstacleSpeed {
+                value: Speed::metres_per_second(0.3).expect("a speed"),
+                saturated: false,
+            },
+            visible: true,
+            seen_now: true,
+        });
+        shield.assess(&view, &ring)
+    };
+    assert_eq!(config.resume_clearance, 0.05);
+    for _ in 0..2 {
+        assert_eq!(stop_at(1.0), Some(StopReason::Starting));
+    }
+    assert_eq!(stop_at(1.0), None);
+    // In a second 300 mm may close, and there are 100 mm that are not way.
+    assert_eq!(stop_at(0.402), None);
+    let too_near = stop_at(0.4);
+    assert!(matches!(too_near, Some(StopReason::ContactTime { .. })));
+    for _ in 0..5 {
+        assert!(stop_at(0.449).is_some(), "not 50 mm more than demanded");
+    }
+    assert!(stop_at(0.452).is_some());
+    assert!(stop_at(0.452).is_some());
+    assert_eq!(stop_at(0.452), None);
 }
 
 /// Only what is a matter of distance lets the robot turn on the spot.

@@ -256,6 +256,16 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             ));
         }
         if let Some(obstacle) = &view.obstacle {
+            // Beyond the promise, nothing is promised; and what is out of sight is no reason to go
+            // faster: no time that passes gives leave to gain speed.
+            assert!(shield::stop_has_no_speed(obstacle.speed.saturated, speed));
+            let gaining = i32::from(obstacle.seen_now) * limits.reaction_time();
+            assert!(shield::slew_kept(
+                self.last.speed(),
+                speed,
+                limits.acceleration(),
+                gaining
+            ));
             let distance = (obstacle.distance.get() * 1000.0) as i32 - obstacle.contact_range;
             let closing = speed + up(obstacle.speed.value.get());
             assert!(shield::sound(
