@@ -238,13 +238,23 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                 Event::AlreadyOpen => {
                     self.note(now, "closed a session that was open already".to_owned());
                 }
-                Event::Configured(stored) => self.note(
-                    now,
-                    format!(
-                        "packets every {} ms, watchdog {} ms",
-                        stored.sip_cycle_ms, stored.watchdog_ms
-                    ),
-                ),
+                Event::Configured(stored) => {
+                    self.note(
+                        now,
+                        format!(
+                            "packets every {} ms, watchdog {} ms",
+                            stored.sip_cycle_ms, stored.watchdog_ms
+                        ),
+                    );
+                    if stored.watchdog_ms == 0 {
+                        self.note(
+                            now,
+                            "the base's watchdog is off: set it, or nothing stops the robot when \
+                             this program or the line fails"
+                                .to_owned(),
+                        );
+                    }
+                }
                 Event::BaudKept { asked, kept } => {
                     self.note(now, format!("baud rate stays {kept}, asked for {asked}"));
                 }
