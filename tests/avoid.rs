@@ -15,8 +15,9 @@ use sidestep::avoid::{
 use sidestep::config::{Config, Parameters};
 use sidestep::law::{Advice, Law};
 use sidestep::math;
+use sidestep::observation::Sighting;
 use sidestep::preset;
-use sidestep::quantity::{Angle, Length, Speed};
+use sidestep::quantity::{Angle, Instant, Length, Speed};
 use sidestep::shield::StopReason;
 use sidestep::track::Obstacle;
 use sidestep::view::{Memory, View};
@@ -140,7 +141,9 @@ proptest! {
             centimetres(speed_max.get()),
         );
         let (dp, s, t, direction, v, heading, max) = terms;
-        let (expected, _) = law::e3(dp, s, t, direction, v, heading, max);
+        let (expected, saturated) = law::e3(dp, s, t, direction, v, heading, max);
+        let on_the_cap = (expected - max).abs() <= 1e-6 * max;
+        prop_assert!(estimate.saturated == saturated || on_the_cap);
         // Beyond 10 m/s the core has no speeds, but then it has no v_o,max either.
         assert_relative_eq!(found, expected, max_relative = 1e-6, epsilon = 1e-9);
         let printed = law::e3_printed(dp, s, t, direction, v, heading, max);
@@ -386,6 +389,26 @@ proptest! {
         );
         prop_assert_eq!(format!("{found:?}"), expected);
     }
+}
+
+/// A measurement that just reaches v_o,max is saturated (ER-S1-06).
+//= avoid.INV-1
+#[test]
+fn reaching_the_cap_is_saturated() {
+    let at = |displacement: f32| {
+        let sighting = Sighting {
+            displacement,
+            scale: 0.1,
+            interval: 1.0,
+            direction: 0.0,
+            taken_at: Instant(0),
+        };
+        avoid::obstacle_speed(&sighting, Speed::ZERO, Angle::ZERO, metres_per_second(0.8))
+    };
+    assert!(at(8.0).saturated);
+    assert_eq!(at(8.0).value.get(), 0.8);
+    assert!(!at(7.999).saturated);
+    assert!(at(8.001).saturated);
 }
 
 /// The sweep of Table 1: k_θ = 60 cm, θ_ref = 90°, v_max = 40 cm/s (S1) and 30 cm/s (S2).

@@ -207,6 +207,25 @@ proptest! {
         }
     }
 
+    /// A reading is as old as it is: what may have closed since it was taken is not there any
+    /// more, whether it was an echo or none.
+    //= view.INV-5
+    #[test]
+    fn ages_are_taken_off(
+        config in usual_or_any_config(), measured in proptest::option::of(0..6_000_i32),
+        age in 0..10_000_u64,
+    ) {
+        let now = Instant(20_000);
+        let mut memory = EchoMemory::default();
+        let bound = memory.update(measured, Instant(20_000 - age), now, &config);
+        let closing = f64::from(config.obstacle_speed_max) + f64::from(config.speed_max);
+        // Rounded to the safe side, but for the f32 sum of the two speeds.
+        let least = (closing * age as f64 * (1.0 - 1e-6)).floor() as i32;
+        prop_assert!(promise::reachable_is_nearer(bound.range - least, bound.reachable));
+        let most = bound.range - explained(&config, age);
+        prop_assert!(promise::reachable_is_nearer(bound.reachable, most));
+    }
+
     /// ER-X1: no number of readings without an echo is proof; only time lets go, and that at the
     /// hold time.
     //= view.INV-3
