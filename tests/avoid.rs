@@ -849,6 +849,29 @@ fn reorients_to_the_goal_and_arrives() {
     assert_eq!(advice.speed, 0.0);
 }
 
+/// Once receding is not gone: it takes as many ticks in a row as are configured.
+#[test]
+fn receding_is_confirmed() {
+    let mut avoid = Avoid::new(s1());
+    avoid.advise(&sees(1.0, 0.5));
+    let mut receding = sees(1.0, 0.5);
+    if let Some(obstacle) = &mut receding.obstacle {
+        obstacle.trend = Trend::Receding;
+    }
+    for _ in 0..3 {
+        avoid.advise(&receding);
+        avoid.advise(&receding);
+        assert_eq!(avoid.current(), Mode::Maneuver);
+        // And then it comes after all.
+        avoid.advise(&sees(1.0, 0.5));
+        assert_eq!(avoid.current(), Mode::Maneuver);
+    }
+    for mode in [Mode::Maneuver, Mode::Maneuver, Mode::Reorient] {
+        avoid.advise(&receding);
+        assert_eq!(avoid.current(), mode);
+    }
+}
+
 /// E7 makes the robot faster the nearer the obstacle is; not before it looks past it (ER-S1-20).
 #[test]
 fn maneuver_first_turns_then_goes() {

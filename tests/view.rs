@@ -379,6 +379,13 @@ fn echoes_from_behind_are_proof() {
     assert_eq!(views[1].range[0], 1_000);
     assert_eq!(views[2].range[0], 1_000);
     assert_eq!(views[3].range[0], 3_000);
+    // For the law too: it is told of who was there until then.
+    let distance = |view: &View<3>| {
+        view.obstacle
+            .map(|obstacle| obstacle.distance.get().round())
+    };
+    let distances: Vec<_> = views.iter().map(distance).collect();
+    assert_eq!(distances, [Some(1.0), Some(1.0), Some(1.0), Some(3.0)]);
     // A silence in between, and the count begins again.
     let views = ahead(&[1.0, 3.0, 3.0, 5.0, 3.0, 3.0, 3.0]);
     let ranges: Vec<_> = views.iter().map(|view| view.range[0]).collect();
