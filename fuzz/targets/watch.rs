@@ -145,6 +145,9 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             self.judge_reason(&decision, advice);
         }
         if let Some(view) = &decision.view {
+            // The law is told of every stop but the one that its own advice causes.
+            let told = view.guard == decision.stop;
+            assert!(told || decision.stop == Some(StopReason::AdviceInvalid));
             self.judge_view(view, observation);
             self.judge_motion(view, decision.command);
         }
