@@ -8,7 +8,7 @@ use sidestep::law::Law;
 use sidestep::observation::Sighting;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep_spec::avoid as law;
 
 /// Any length there is.

@@ -11,8 +11,8 @@ use crate::quantity::{OutOfRange, in_range};
 pub struct Field {
     /// Name, as in [`Parameters`].
     pub name: &'static str,
-    /// Unit of the value: `m`, `m/s`, `m/s^2`, `s`, `rad`, `rad/s`, `rad/s^2`, `1/s` or
-    /// `samples` (whole numbers).
+    /// Unit of the value: `m`, `m/s`, `m/s^2`, `s`, `rad`, `rad/s`, `rad/s^2`, `1/s`, `samples`
+    /// (whole numbers) or `share` (of one).
     pub unit: &'static str,
     /// Least allowed value.
     pub min: f32,
@@ -92,10 +92,28 @@ parameters! {
         "The base accelerates no harder than this.";
     braking: "m/s^2", 0.1, 10.0,
         "The base brakes at least as hard as this, on this floor, with this load.";
+    braking_share: "share", 0.1, 1.0,
+        "The share of `braking` that is left when the brakes are at their worst; the shield counts on no more.";
+    reverse_speed_max: "m/s", 0.0, 0.5,
+        "Greatest speed backward; 0 is never. The robot backs off only where sonars look backward.";
     turn_acceleration: "rad/s^2", 0.1, 20.0,
         "The base stops turning at least this hard; it is not asked to start turning harder.";
     reaction_time: "s", 0.02, 2.0,
         "From the moment the sensors describe to the moment the command of the next tick takes effect, at the longest: the way of a reading to here, the time between two ticks, the way of a command, and the base's own delay.";
+    still_speed_max: "m/s", 0.0, 3.0,
+        "What has been seen to stand still moves no faster than this while the robot passes it.";
+    still_samples: "samples", 2.0, 100.0,
+        "Readings in a row that must agree with the robot's own motion before a thing counts as still.";
+    still_tolerance: "m", 0.005, 0.5,
+        "Readings of a still thing scatter by no more than this.";
+    range_error: "m", 0.0, 0.5,
+        "A sonar's range is too long by no more than this.";
+    speed_error: "m/s", 0.0, 0.5,
+        "The measured speed is too low by no more than this.";
+    blind_angle_max: "rad", 0.0, 3.15,
+        "Directions of travel in which no sonar looks are allowed for as long as the gap between two cones is no wider than this.";
+    latch_time: "s", 0.1, 600.0,
+        "A stop because something is overdue holds until it is reset once it has lasted this long.";
     resume_clearance: "m", 0.0, 1.0,
         "Clearance beyond what a stop demands before the robot moves again.";
     resume_samples: "samples", 1.0, 50.0,
@@ -170,6 +188,16 @@ impl Config {
             "m",
         )?;
         in_range("cruise_speed", p.cruise_speed, 0.01, p.speed_max, "m/s")?;
+        // However weak the brakes, the sums of the shield stay inside their integers.
+        in_range("braking_share", p.braking_share, 0.1 / p.braking, 1.0, "share")?;
+        // What is still is not faster than what may be anything.
+        in_range(
+            "still_speed_max",
+            p.still_speed_max,
+            0.0,
+            p.obstacle_speed_max,
+            "m/s",
+        )?;
         in_range(
             "min_distance",
             p.min_distance,

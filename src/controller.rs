@@ -1,11 +1,12 @@
 //! One tick: observation in, command out. Data flows one way.
 
 use crate::config::Config;
+use crate::failsafe::{Action, StopReason};
 use crate::law::Law;
 use crate::observation::Observation;
 use crate::quantity::{Instant, OutOfRange, in_range};
 use crate::ring::Ring;
-use crate::shield::{Command, Limit, Shield, StopReason, Verdict};
+use crate::shield::{Command, Limit, Shield, Verdict};
 use crate::view::{Memory, View};
 use nalgebra::Vector2;
 
@@ -14,6 +15,8 @@ use nalgebra::Vector2;
 pub struct Decision<const N: usize> {
     /// What the robot is told.
     pub command: Command,
+    /// The most severe of what is done about anything.
+    pub action: Action,
     /// Why the shield makes it stand still, if it does.
     pub stop: Option<StopReason>,
     /// What made it slower than advised, if anything did.
@@ -71,14 +74,19 @@ impl<L: Law<N>, const N: usize> Controller<L, N> {
             Ok(mut view) => {
                 view.guard = self.shield.assess(&view, &self.ring);
                 let advice = self.law.advise(&view);
-                let verdict = self.shield.admit(advice, &view);
+                let verdict = self.shield.admit(advice, &view, &self.ring);
                 self.decision(verdict, Some(view))
             }
         }
     }
 
+    /// Lets the robot go on after a latched stop, once nothing demands a stop any more.
+    pub fn reset(&mut self) {
+        self.shield.reset();
+    }
+
     /// Stops for a reason that no observation shows, such as a lost link. The stop lasts until
-    /// observations have been clear for long enough.
+    /// observations have been clear for long enough, or is latched: see [`crate::failsafe`].
     pub fn halt(&mut self, reason: StopReason, now: Instant) -> Decision<N> {
         let verdict = self.shield.refuse(reason, now);
         self.decision(verdict, None)
@@ -87,6 +95,7 @@ impl<L: Law<N>, const N: usize> Controller<L, N> {
     fn decision(&self, verdict: Verdict, view: Option<View<N>>) -> Decision<N> {
         Decision {
             command: verdict.command,
+            action: verdict.action,
             stop: verdict.stop,
             limit: verdict.limit,
             mode: self.law.mode(),

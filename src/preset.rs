@@ -4,7 +4,9 @@ use crate::config::Parameters;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_6, PI};
 
 /// The robot of S1 (2012), Table 1. Values that the paper does not give (body, dynamics, turn
-/// rate) are ours, for a small service robot, and to be measured on the robot at hand.
+/// rate) are ours, for a small service robot, and to be measured on the robot at hand. Its three
+/// sonars leave up to 60° between them unseen (ER-S1-21), which `blind_angle_max` allows for here:
+/// fit more sonars, and lower it.
 pub const SRIKANDI_II_2012: Parameters = Parameters {
     safe_distance: 1.2,
     near_distance: 0.8,
@@ -25,8 +27,17 @@ pub const SRIKANDI_II_2012: Parameters = Parameters {
     robot_radius: 0.25,
     acceleration: 0.3,
     braking: 1.0,
+    braking_share: 1.0,
+    reverse_speed_max: 0.0,
     turn_acceleration: PI,
     reaction_time: 0.32,
+    still_speed_max: 0.3,
+    still_samples: 10.0,
+    still_tolerance: 0.05,
+    range_error: 0.02,
+    speed_error: 0.05,
+    blind_angle_max: 1.1,
+    latch_time: 5.0,
     resume_clearance: 0.1,
     resume_samples: 3.0,
     sonar_age_max: 0.5,
@@ -42,6 +53,7 @@ pub const SRIKANDI_II_2011: Parameters = Parameters {
     speed_max: 0.3,
     cruise_speed: 0.15,
     obstacle_speed_max: 0.3,
+    still_speed_max: 0.2,
     ..SRIKANDI_II_2012
 };
 
@@ -53,5 +65,7 @@ pub const PIONEER_3DX: Parameters = Parameters {
     resume_clearance: 0.05,
     robot_radius: 0.301,
     reaction_time: 0.22,
+    reverse_speed_max: 0.1,
+    blind_angle_max: 0.2,
     ..SRIKANDI_II_2012
 };

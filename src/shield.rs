@@ -1,136 +1,20 @@
 //! The shield: whatever a law advises, the robot is at rest before anything touches it.
 //!
 //! Integers only (millimetres, mm/s, milliradians/s, milliseconds), every rounding to the safe
-//! side. Braking is always allowed; motion needs the guard of `spec/shield.md`: the clearance of
-//! every sonar must be enough to react and brake, with the obstacle coming at its greatest speed
-//! all the while. Proved for any advice in `proofs/shield.rs`.
+//! side. Braking is always allowed; motion needs the guard of `spec/shield.md`: whatever each sonar
+//! saw, and whatever that may have done since, there must be room to react and brake. The guard is
+//! a comparison of sums of products; the ways and times to rest that go into it are computed once,
+//! with the limits. Proved for any advice in `proofs/shield.rs`.
 
 use crate::config::Config;
+use crate::failsafe::{Action, StopReason};
 use crate::law::Advice;
+use crate::monitor::Monitor;
 use crate::observation::SonarReading;
 use crate::quantity::Instant;
-use crate::ring::Ring;
-use crate::view::View;
+use crate::ring::{Closing, Ring};
+use crate::view::{Class, Hazard, View};
 use core::fmt;
-
-/// Why the robot is made to stand still. Distances in millimetres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StopReason {
-    /// Nothing has been observed yet.
-    Starting,
-    /// This sonar has not measured for too long.
-    SonarStale {
-        /// Index of the sonar.
-        sonar: usize,
-    },
-    /// This sonar reported something that is not a range.
-    SonarInvalid {
-        /// Index of the sonar.
-        sonar: usize,
-    },
-    /// This sonar sees something inside its blanking distance.
-    TooNear {
-        /// Index of the sonar.
-        sonar: usize,
-    },
-    /// A forward sonar reads the minimum distance or less (S1 A1).
-    MinDistance {
-        /// Index of the sonar.
-        sonar: usize,
-        /// What it reads.
-        range: i32,
-        /// The minimum distance.
-        minimum: i32,
-    },
-    /// Contact is possible within the stop time (S1 E4).
-    ContactTime {
-        /// Distance left before contact.
-        distance: i32,
-        /// Speed at which it may close, mm/s.
-        closing: i32,
-    },
-    /// The obstacle is as fast as the promise allows, or faster (ER-S1-06).
-    ObstacleTooFast,
-    /// There is not even room to react at rest.
-    Clearance {
-        /// Index of the sonar.
-        sonar: usize,
-        /// Clearance of the hull.
-        clearance: i32,
-        /// Clearance needed.
-        required: i32,
-    },
-    /// There is no odometry, or it is too old.
-    OdometryStale,
-    /// The odometry is not a pose.
-    OdometryInvalid,
-    /// The clock went back.
-    ClockWentBack,
-    /// The law advised something that is not a number.
-    AdviceInvalid,
-    /// The motors have no power.
-    MotorsDisabled,
-    /// A wheel is stalled or a bumper pressed.
-    Stalled,
-    /// The emergency stop is pressed.
-    EmergencyStop,
-    /// The link to the base is lost.
-    LinkLost,
-    /// The operator asked for it.
-    Operator,
-}
-
-impl StopReason {
-    /// The robot may turn on the spot meanwhile: a round robot that turns sweeps nothing new.
-    /// Only where the sensors are in order and what is wrong is the distance.
-    #[must_use]
-    pub const fn may_turn(self) -> bool {
-        matches!(
-            self,
-            Self::MinDistance { .. }
-                | Self::ContactTime { .. }
-                | Self::ObstacleTooFast
-                | Self::Clearance { .. }
-        )
-    }
-}
-
-impl fmt::Display for StopReason {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Starting => write!(f, "nothing observed yet"),
-            Self::SonarStale { sonar } => write!(f, "sonar {sonar} is stale"),
-            Self::SonarInvalid { sonar } => write!(f, "sonar {sonar} reads no valid range"),
-            Self::TooNear { sonar } => write!(f, "sonar {sonar}: something touches it"),
-            Self::MinDistance {
-                sonar,
-                range,
-                minimum,
-            } => write!(f, "sonar {sonar}: {range} mm, minimum {minimum} mm"),
-            Self::ContactTime { distance, closing } => {
-                write!(f, "contact possible: {distance} mm at {closing} mm/s")
-            }
-            Self::ObstacleTooFast => write!(f, "obstacle faster than promised"),
-            Self::Clearance {
-                sonar,
-                clearance,
-                required,
-            } => write!(
-                f,
-                "sonar {sonar}: {clearance} mm clear, {required} mm needed"
-            ),
-            Self::OdometryStale => write!(f, "odometry is stale"),
-            Self::OdometryInvalid => write!(f, "odometry is not a pose"),
-            Self::ClockWentBack => write!(f, "clock went back"),
-            Self::AdviceInvalid => write!(f, "the law's advice is not a number"),
-            Self::MotorsDisabled => write!(f, "motors are disabled"),
-            Self::Stalled => write!(f, "stall or bumper"),
-            Self::EmergencyStop => write!(f, "emergency stop"),
-            Self::LinkLost => write!(f, "link lost"),
-            Self::Operator => write!(f, "operator"),
-        }
-    }
-}
 
 /// What the robot is told to do. Only the shield makes one that moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,7 +30,7 @@ impl Command {
         turn_rate: 0,
     };
 
-    /// Forward speed in mm/s, never negative.
+    /// Speed in mm/s, forward positive.
     #[must_use]
     pub const fn speed(self) -> i32 {
         self.speed
@@ -188,45 +72,86 @@ const fn divide_up(dividend: i32, divisor: i32) -> i32 {
     (dividend + (divisor - 1)) / divisor
 }
 
+/// Ways and times to rest are known for this many speeds.
+const RUNGS: usize = 64;
+
+/// What it takes to come to rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Rung {
+    /// For a robot that is no faster than this until it begins to brake, mm/s.
+    fastest: i32,
+    /// Its way, mm.
+    way: i32,
+    /// Its time, ms.
+    time: i32,
+}
+
 /// The shield's numbers, as integers: what the base can do and what is promised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     speed_max: i32,
+    reverse_speed_max: i32,
     turn_rate_max: i32,
     acceleration: i32,
     braking: i32,
     turn_acceleration: i32,
     reaction_time: i32,
     obstacle_speed: i32,
+    still_speed: i32,
+    speed_error: i32,
     min_distance: i32,
     stop_time: i32,
+    latch_time: u64,
     resume_clearance: i32,
     resume_samples: u32,
+    rungs: [Rung; RUNGS + 1],
 }
 
 impl Limits {
     /// The limits of a configuration, rounded to the safe side.
     #[must_use]
     pub fn new(config: &Config) -> Self {
-        Self {
+        let mut limits = Self {
             speed_max: millimetres_down(config.speed_max),
+            reverse_speed_max: millimetres_down(config.reverse_speed_max),
             turn_rate_max: millimetres_down(config.turn_rate_max),
             acceleration: millimetres_up(config.acceleration),
-            braking: millimetres_down(config.braking),
+            // At least 100 mm/s², whatever floats round.
+            braking: millimetres_down(config.braking * config.braking_share).max(99),
             turn_acceleration: millimetres_down(config.turn_acceleration),
             reaction_time: millimetres_up(config.reaction_time),
             obstacle_speed: millimetres_up(config.obstacle_speed_max),
+            still_speed: millimetres_up(config.still_speed_max),
+            speed_error: millimetres_up(config.speed_error),
             min_distance: millimetres_up(config.min_distance),
             stop_time: millimetres_up(config.stop_time),
+            latch_time: milliseconds(config.latch_time),
             resume_clearance: millimetres_up(config.resume_clearance),
             resume_samples: config.resume_samples as u32,
+            rungs: [Rung::default(); RUNGS + 1],
+        };
+        let top = limits.speed_max + limits.speed_gain();
+        for k in 0..=RUNGS {
+            let fastest = (top * k as i32 + RUNGS as i32 - 1) / RUNGS as i32;
+            limits.rungs[k] = Rung {
+                fastest,
+                way: limits.way_to_rest(fastest),
+                time: limits.time_to_rest(fastest),
+            };
         }
+        limits
     }
 
     /// Greatest forward speed in mm/s.
     #[must_use]
     pub const fn speed_max(&self) -> i32 {
         self.speed_max
+    }
+
+    /// Greatest speed backward in mm/s, as a positive number.
+    #[must_use]
+    pub const fn reverse_speed_max(&self) -> i32 {
+        self.reverse_speed_max
     }
 
     /// Greatest turn rate in milliradians/s.
@@ -241,10 +166,13 @@ impl Limits {
         self.turn_acceleration
     }
 
-    /// Greatest obstacle speed V for which the promise holds, mm/s.
+    /// The speed bound of a class in mm/s: V for people and the unknown.
     #[must_use]
-    pub const fn obstacle_speed(&self) -> i32 {
-        self.obstacle_speed
+    pub const fn class_speed(&self, class: Class) -> i32 {
+        match class {
+            Class::Still => self.still_speed,
+            Class::Unknown => self.obstacle_speed,
+        }
     }
 
     /// The reaction time ε in ms.
@@ -265,25 +193,29 @@ impl Limits {
         self.stop_time
     }
 
-    /// The braking bound b in mm/s².
+    /// The braking bound b in mm/s²: what is left of the brakes at their worst.
     #[must_use]
     pub const fn braking(&self) -> i32 {
         self.braking
     }
 
-    /// SH.2: distance in mm in which robot and obstacle close while the robot brakes from `speed`
-    /// (mm/s, 0 to 12,000) to rest: v²/2b + V·v/b.
+    /// By how much a measured speed may be too low, mm/s.
     #[must_use]
-    pub const fn stopping_distance(&self, speed: i32) -> i32 {
-        divide_up(speed * speed, 2 * self.braking)
-            + divide_up(self.obstacle_speed * speed, self.braking)
+    pub const fn speed_error(&self) -> i32 {
+        self.speed_error
     }
 
-    /// The robot's own way to rest, in mm, if for one reaction time it is no faster than `speed`
-    /// (mm/s, 0 to 12,000) and brakes then: v·ε + v²/2b.
+    /// SH.2: the robot's own way to rest, in mm, if for one reaction time it is no faster than
+    /// `speed` (mm/s, 0 to 12,000) and brakes then: v·ε + v²/2b.
     #[must_use]
     pub const fn way_to_rest(&self, speed: i32) -> i32 {
         divide_up(speed * self.reaction_time, 1000) + divide_up(speed * speed, 2 * self.braking)
+    }
+
+    /// SH.2: the time to rest, in ms, from `speed` (mm/s, 0 to 12,000): ε + v/b.
+    #[must_use]
+    pub const fn time_to_rest(&self, speed: i32) -> i32 {
+        self.reaction_time + divide_up(1000 * speed, self.braking)
     }
 
     /// Speed in mm/s by which the robot may gain on `speed` within one reaction time: A·ε.
@@ -292,14 +224,83 @@ impl Limits {
         divide_up(self.acceleration * self.reaction_time, 1000)
     }
 
-    /// SH.3: clearance in mm that is needed to be told to go `speed` (mm/s, 0 to 12,000 less one
-    /// gain) for one reaction time: travel of robot and obstacle at the speed the robot may have
-    /// by the end of it, then the stopping distance from that speed.
+    /// SH.3, for people of whom nothing but the present clearance is known, straight ahead: the
+    /// clearance in mm that is needed to be told to go `speed` (mm/s, 0 to 12,000 less one gain).
     #[must_use]
     pub const fn required_clearance(&self, speed: i32) -> i32 {
         let fastest = speed + self.speed_gain();
-        divide_up((fastest + self.obstacle_speed) * self.reaction_time, 1000)
-            + self.stopping_distance(fastest)
+        self.way_to_rest(fastest)
+            + divide_up(self.obstacle_speed * self.time_to_rest(fastest), 1000)
+    }
+
+    /// The first rung that is no slower than `fastest`; none if the robot is faster than it may
+    /// ever be told.
+    fn rung(&self, fastest: i32) -> Option<Rung> {
+        // How many are slower: bisection, seven steps.
+        let below = greatest(7, RUNGS as i32 + 1, |k| {
+            self.rungs[(k - 1).clamp(0, RUNGS as i32) as usize].fastest < fastest
+        });
+        self.rungs.get(below as usize).copied()
+    }
+
+    /// What the robot may do from now until it rests, if it is told `speed` and `turn_rate` (mm/s,
+    /// mrad/s) for one reaction time and rest then. None if it is faster than it may ever be told.
+    #[must_use]
+    pub fn plan(&self, speed: i32, turn_rate: i32, motion: &Motion) -> Option<Plan> {
+        let told = speed.saturating_abs().min(12_000);
+        let same = (speed < 0) == motion.backward || speed == 0;
+        // What it rolls on with, and what it is told: the first alone if it is told to rest.
+        let rolling = if same && speed != 0 {
+            motion.speed.max(told + self.speed_gain())
+        } else {
+            motion.speed
+        };
+        let mut plan = Plan {
+            way: [0; 2],
+            time: self.reaction_time,
+            turn: 0,
+            turn_rate: turn_rate.saturating_abs().max(motion.turn_rate),
+        };
+        if rolling > 0 {
+            let rung = self.rung(rolling)?;
+            plan.way[usize::from(motion.backward)] = rung.way;
+            plan.time = rung.time;
+        }
+        if !same {
+            let rung = self.rung(told + self.speed_gain())?;
+            plan.way[usize::from(speed < 0)] = rung.way;
+            plan.time = plan.time.max(rung.time);
+        }
+        let turn = (i64::from(plan.turn_rate) * i64::from(plan.time) + 999) / 1000;
+        plan.turn = turn.min(10_000) as i32;
+        Some(plan)
+    }
+
+    /// SH.3: the clearance that a plan needs from a thing, in thousandths of a millimetre, if all
+    /// motion ends within `time` ms from now: the robot's own way since the thing was seen and to
+    /// rest, as far as it can lead towards the thing, and the thing's way in that time.
+    #[must_use]
+    pub fn needed(&self, hazard: &Hazard, closing: &Closing, plan: &Plan, time: i32) -> i64 {
+        let turned = hazard.turned.saturating_add(plan.turn);
+        let share = |cosine: i32| i64::from(cosine.saturating_add(turned).clamp(0, 1000));
+        let way = |i: usize| i64::from(hazard.way[i]) + i64::from(plan.way[i]);
+        let speed = i64::from(self.class_speed(hazard.class));
+        share(closing.ahead) * way(0)
+            + share(closing.back) * way(1)
+            + speed * (i64::from(hazard.age) + i64::from(time))
+    }
+
+    /// SH.3 and SH.6: driving and turning both end before contact with the thing.
+    #[must_use]
+    pub fn fits(&self, hazard: &Hazard, closing: &Closing, plan: &Plan) -> bool {
+        let there = 1000 * i64::from(hazard.clearance);
+        if self.needed(hazard, closing, plan, plan.time) > there {
+            return false;
+        }
+        // The turn ends |ω|/α after the reaction time; both sides multiplied by α.
+        let left = there - self.needed(hazard, closing, plan, self.reaction_time);
+        let class_speed = i64::from(self.class_speed(hazard.class));
+        1000 * class_speed * i64::from(plan.turn_rate) <= i64::from(self.turn_acceleration) * left
     }
 
     /// SH.4: contact is possible within the stop time: t_lb = distance/closing ≤ T, with the
@@ -309,132 +310,186 @@ impl Limits {
         distance as i64 * 1000 <= self.stop_time as i64 * closing as i64
     }
 
-    /// SH.5: the turn rate nearest to `advised` (mrad/s) within the greatest turn rate, within
-    /// what SH.6 allows for the clearance (mm), and no farther beyond `last` than the base can
-    /// gain in `elapsed` ms (0 to ε). Turning slower is always allowed.
-    ///
-    /// SH.6: the turn, too, ends before contact: after reacting for ε the robot stops turning in
-    /// ω/α, and robot and obstacle have not closed the clearance by then:
-    /// x + V(ε + ω/α) ≤ d, where x is the robot's own way to rest, see [`way_to_rest`].
-    ///
-    /// [`way_to_rest`]: Self::way_to_rest
+    /// SH.5: of the commands that scale the advice down (mm/s, mrad/s) the fastest that the base
+    /// reaches from `last` and for which there is room; rest if there is none. The curvature is
+    /// that of the advice or less. The base has `elapsed` ms (0 to ε) to gain speed and turn rate.
     #[must_use]
-    pub fn admissible_turn_rate(
+    pub fn admissible<const N: usize>(
         &self,
-        last: i32,
-        advised: i32,
-        elapsed: i32,
-        clearance: i32,
-    ) -> i32 {
-        // ω ≤ α·(d − V·ε)/V. Clearances beyond 10 m allow for no more than 10 m do.
-        let spare =
-            clearance.clamp(0, 10_000) - divide_up(self.obstacle_speed * self.reaction_time, 1000);
-        let limit = if spare <= 0 {
-            0
-        } else if self.obstacle_speed == 0 {
-            self.turn_rate_max
-        } else {
-            (self.turn_acceleration * spare / self.obstacle_speed).min(self.turn_rate_max)
-        };
-        let step = self.turn_acceleration * elapsed / 1000;
-        advised
-            .clamp(last.min(0) - step, last.max(0) + step)
-            .clamp(-limit, limit)
-    }
-
-    /// SH.5: the greatest speed, in mm/s, of those from 0 to `advised` that the base reaches from
-    /// `last` within `elapsed` ms (0 to ε) and that every guard admits.
-    ///
-    /// `speed_bound` is what the robot's speed may be now. SH.3 allows for one speed gain above the
-    /// speed it is asked for, so a robot that may be faster than that is judged by what it may be
-    /// at: if that much room is not there, it is told to brake to rest, not to a speed in between.
-    #[must_use]
-    pub fn admissible_speed(
-        &self,
-        last: i32,
-        advised: i32,
-        elapsed: i32,
-        speed_bound: i32,
-        room: Room,
+        advised: Command,
+        last: Command,
+        elapsed: [i32; 2],
+        surroundings: &Surroundings<'_, N>,
     ) -> Admission {
-        let reachable = last + self.acceleration * elapsed / 1000;
-        let wish = advised.max(0).min(self.speed_max).min(reachable);
-        let in_time = |v: i32| {
-            room.ahead
-                .is_none_or(|(distance, speed)| !self.contact_within_stop_time(distance, v + speed))
-        };
-        let in_space = |v: i32| self.required_clearance(v) <= room.clearance;
-        let speed = greatest(wish, |v| in_space(v) && in_time(v));
-        let limit = if speed < wish {
-            Some(if in_space(speed + 1) {
-                Limit::ContactTime
-            } else {
-                Limit::Clearance { sonar: room.sonar }
-            })
+        let [gaining, elapsed] = elapsed;
+        let backward = advised.speed < 0;
+        let wanted = advised.speed.saturating_abs();
+        let most = if !backward {
+            self.speed_max
+        } else if surroundings.ring.looks_back() {
+            self.reverse_speed_max
         } else {
-            (wish < advised).then_some(Limit::Base)
+            0
         };
-        // Asked once more, so that what is returned does not rest on the search.
-        let judged_at = speed.max(speed_bound - self.speed_gain());
-        let required = self.required_clearance(judged_at);
-        if required <= room.clearance {
-            Admission {
-                speed,
-                judged_at,
-                required,
-                limit,
+        let kept = if (last.speed < 0) == backward {
+            last.speed.saturating_abs()
+        } else {
+            0
+        };
+        let reachable = kept.saturating_add(self.acceleration * gaining / 1000);
+        let wish = wanted.min(most).min(reachable);
+
+        let step = self.turn_acceleration * elapsed / 1000;
+        let turn_wish = advised
+            .turn_rate
+            .clamp(
+                last.turn_rate.min(0).saturating_sub(step),
+                last.turn_rate.max(0).saturating_add(step),
+            )
+            .clamp(-self.turn_rate_max, self.turn_rate_max);
+
+        // Speeds by 64ths of the greatest, the wish itself last.
+        let command = |k: i32| {
+            let speed = wish.min((self.speed_max * k + RUNGS as i32 - 1) / RUNGS as i32);
+            let turn_rate = greatest(13, turn_wish.saturating_abs(), |rate| {
+                no_tighter(speed, rate, advised)
+            });
+            Command {
+                speed: if backward { -speed } else { speed },
+                turn_rate: if turn_wish < 0 { -turn_rate } else { turn_rate },
             }
-        } else {
-            Admission {
+        };
+        let driving = greatest(7, RUNGS as i32, |k| surroundings.admit(self, command(k)));
+        let mut admitted = Command::REST;
+        if wish > 0 && driving > 0 {
+            admitted = command(driving);
+        } else if advised.speed == 0 {
+            let turn = |rate: i32| Command {
                 speed: 0,
-                judged_at,
-                required,
-                limit: (advised > 0).then_some(Limit::Clearance { sonar: room.sonar }),
-            }
+                turn_rate: if turn_wish < 0 { -rate } else { rate },
+            };
+            let rate = greatest(13, turn_wish.saturating_abs(), |rate| {
+                surroundings.admit(self, turn(rate))
+            });
+            admitted = turn(rate);
+        }
+        // Asked once more, so that what is returned does not rest on the search.
+        let fits = admitted == Command::REST || surroundings.admit(self, admitted);
+        if !fits || !no_tighter(admitted.speed.saturating_abs(), admitted.turn_rate, advised) {
+            admitted = Command::REST;
+        }
+        let limit = if admitted.speed.saturating_abs() < wish {
+            Some(surroundings.obstruction(self, command(driving + 1)))
+        } else {
+            (wish < wanted).then_some(Limit::Base)
+        };
+        Admission {
+            command: admitted,
+            limit,
         }
     }
 }
 
-/// The room there is to move in.
+/// Turning at `turn_rate` while driving at `speed` bends the path no tighter than advised:
+/// |ω|/v ≤ |ω*|/|v*|, multiplied out.
+fn no_tighter(speed: i32, turn_rate: i32, advised: Command) -> bool {
+    i64::from(turn_rate.saturating_abs()) * i64::from(advised.speed.saturating_abs())
+        <= i64::from(advised.turn_rate.saturating_abs()) * i64::from(speed)
+}
+
+/// How the robot may be moving now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Room {
-    /// Least clearance of any sonar, mm.
-    pub clearance: i32,
-    /// The sonar that it is the clearance of.
-    pub sonar: usize,
+pub struct Motion {
+    /// It is no faster than this, mm/s.
+    pub speed: i32,
+    /// It rolls backward.
+    pub backward: bool,
+    /// It turns no faster than this, mrad/s.
+    pub turn_rate: i32,
+}
+
+impl Motion {
+    /// At rest.
+    pub const REST: Self = Self {
+        speed: 0,
+        backward: false,
+        turn_rate: 0,
+    };
+}
+
+/// What the robot may do from now until it rests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// Ways forward and backward, mm.
+    pub way: [i32; 2],
+    /// Time until it has stopped driving, ms.
+    pub time: i32,
+    /// By how much it may turn while it drives, mrad.
+    pub turn: i32,
+    /// How fast it may turn, mrad/s.
+    pub turn_rate: i32,
+}
+
+/// What there is to run into, and how the robot moves among it.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings<'a, const N: usize> {
+    /// What each sonar is believed to have in front of it.
+    pub hazard: &'a [Hazard; N],
+    /// Where the sonars look.
+    pub ring: &'a Ring<N>,
+    /// How the robot moves now.
+    pub motion: Motion,
     /// Distance before contact (mm, at least 0) and speed (mm/s) of the obstacle that the law
     /// avoids.
     pub ahead: Option<(i32, i32)>,
 }
 
-impl Room {
-    fn new<const N: usize>(view: &View<N>) -> Self {
-        let mut room = Self {
-            clearance: i32::MAX,
-            sonar: 0,
-            ahead: view.obstacle.as_ref().map(approach),
-        };
-        for (sonar, &clearance) in view.clearance.iter().enumerate() {
-            if clearance < room.clearance {
-                room.clearance = clearance;
-                room.sonar = sonar;
+impl<const N: usize> Surroundings<'_, N> {
+    /// Whether there is room for a command.
+    #[must_use]
+    pub fn admit(&self, limits: &Limits, command: Command) -> bool {
+        limits
+            .plan(command.speed, command.turn_rate, &self.motion)
+            .is_some_and(|plan| self.tight(limits, &plan).is_none())
+            && !self.touches_in_time(limits, command.speed)
+    }
+
+    /// The first sonar with too little room for a plan.
+    fn tight(&self, limits: &Limits, plan: &Plan) -> Option<usize> {
+        for sonar in 0..N {
+            let closing = &self.ring.sonars()[sonar].closing;
+            if !limits.fits(&self.hazard[sonar], closing, plan) {
+                return Some(sonar);
             }
         }
-        room
+        None
+    }
+
+    /// SH.4 for a robot that drives forward.
+    fn touches_in_time(&self, limits: &Limits, speed: i32) -> bool {
+        speed > 0
+            && self.ahead.is_some_and(|(distance, obstacle_speed)| {
+                limits.contact_within_stop_time(distance, speed.saturating_add(obstacle_speed))
+            })
+    }
+
+    /// Why there is no room for a command.
+    fn obstruction(&self, limits: &Limits, command: Command) -> Limit {
+        let plan = limits.plan(command.speed, command.turn_rate, &self.motion);
+        match plan.and_then(|plan| self.tight(limits, &plan)) {
+            Some(sonar) => Limit::Clearance { sonar },
+            None if plan.is_none() => Limit::Base,
+            None => Limit::ContactTime,
+        }
     }
 }
 
-/// A speed that the shield admits.
+/// A command that the shield admits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Admission {
-    /// The speed, mm/s.
-    pub speed: i32,
-    /// The speed it was judged at, mm/s: at least itself, and no less than one speed gain below
-    /// what the robot's speed may be now.
-    pub judged_at: i32,
-    /// The clearance that needs, mm; no more than there is if the speed is not 0.
-    pub required: i32,
-    /// What made it less than advised, if anything did.
+    /// The command.
+    pub command: Command,
+    /// What made it slower than advised, if anything did.
     pub limit: Option<Limit>,
 }
 
@@ -443,7 +498,7 @@ pub struct Admission {
 pub enum Limit {
     /// The greatest speed or the acceleration of the base.
     Base,
-    /// The clearance in front of this sonar.
+    /// The clearance of what this sonar saw.
     Clearance {
         /// Index of the sonar.
         sonar: usize,
@@ -467,6 +522,8 @@ impl fmt::Display for Limit {
 pub struct Verdict {
     /// What the robot is told.
     pub command: Command,
+    /// The most severe of what is done about anything.
+    pub action: Action,
     /// Why it stands still, if the shield makes it.
     pub stop: Option<StopReason>,
     /// What made it slower than advised, if anything did.
@@ -477,9 +534,16 @@ pub struct Verdict {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shield {
     limits: Limits,
+    monitor: Monitor,
     last: Command,
     last_tick: Option<Instant>,
     stop: Option<StopReason>,
+    /// The stop holds until it is reset.
+    latched: bool,
+    /// Since when something has been overdue.
+    overdue_since: Option<Instant>,
+    /// Nothing demanded a stop at least once.
+    ready: bool,
     /// Ticks in a row in which nothing demanded a stop.
     clear: u32,
 }
@@ -490,9 +554,13 @@ impl Shield {
     pub fn new(config: &Config) -> Self {
         Self {
             limits: Limits::new(config),
+            monitor: Monitor::new(),
             last: Command::REST,
             last_tick: None,
             stop: Some(StopReason::Starting),
+            latched: false,
+            overdue_since: None,
+            ready: false,
             clear: 0,
         }
     }
@@ -503,64 +571,138 @@ impl Shield {
         &self.limits
     }
 
+    /// The stop holds until it is reset.
+    #[must_use]
+    pub const fn is_latched(&self) -> bool {
+        self.latched
+    }
+
+    /// Somebody has looked at what latched the stop, and lets the robot go on once nothing demands
+    /// a stop any more. What is still wrong latches it again.
+    pub fn reset(&mut self) {
+        self.latched = false;
+        self.overdue_since = None;
+        self.clear = 0;
+        self.monitor = Monitor::new();
+    }
+
     /// Judges a view: the reason to stand still in this tick, if there is one. A stop once begun
     /// lasts until nothing has demanded it, with the resume clearance on top, for
-    /// `resume_samples` ticks in a row.
+    /// `resume_samples` ticks in a row; a latched one until it is reset as well.
     pub fn assess<const N: usize>(&mut self, view: &View<N>, ring: &Ring<N>) -> Option<StopReason> {
-        if self.last_tick.is_some_and(|last| view.now < last) {
-            return self.halt(StopReason::ClockWentBack);
-        }
         let margin = if self.stop.is_some() {
             self.limits.resume_clearance
         } else {
             0
         };
-        match self.demand(view, ring, margin) {
-            Some(reason) => return self.halt(reason),
-            None => self.clear = self.clear.saturating_add(1),
-        }
-        if self.clear >= self.limits.resume_samples {
-            self.stop = None;
-        }
-        self.stop
+        let measured_at = Instant(view.now.0.saturating_sub(view.odometry_age));
+        let measured = millimetres_up(view.speed.abs());
+        let weak = self.monitor.measured(measured, measured_at, &self.limits);
+        let cause = StopReason::worse(
+            weak.then(|| StopReason::BrakesWeak {
+                measured,
+                bound: self.monitor.bound(&self.limits),
+            }),
+            self.demand(view, ring, margin),
+        );
+        let Some(reason) = cause else {
+            self.ready = true;
+            self.overdue_since = None;
+            if !self.latched {
+                self.clear = self.clear.saturating_add(1);
+                if self.clear >= self.limits.resume_samples {
+                    self.stop = None;
+                }
+            }
+            return self.stop;
+        };
+        self.halt(reason, view.now)
     }
 
     /// Stops for `reason`: the command is rest from now on.
-    pub fn halt(&mut self, reason: StopReason) -> Option<StopReason> {
-        self.stop = Some(reason);
+    fn halt(&mut self, reason: StopReason, now: Instant) -> Option<StopReason> {
         self.clear = 0;
+        if !reason.row().latches_in_time {
+            self.overdue_since = None;
+        } else if self.overdue_since.is_none() {
+            self.overdue_since = Some(now);
+        }
+        let overdue = self
+            .overdue_since
+            .and_then(|since| now.since(since))
+            .is_some_and(|lasted| lasted >= self.limits.latch_time);
+        if !self.latched {
+            self.stop = Some(reason);
+            // Before everything was there for the first time, nothing has been lost.
+            self.latched = reason.action() == Action::LatchedStop || (overdue && self.ready);
+        }
         self.stop
     }
 
-    /// The first guard that demands a stop, with `margin` (mm) added to every distance needed.
+    /// What demands a stop, the worst of it, with `margin` (mm) added to every distance needed.
     fn demand<const N: usize>(
         &self,
         view: &View<N>,
         ring: &Ring<N>,
         margin: i32,
     ) -> Option<StopReason> {
+        let limits = &self.limits;
+        let moving = self.last != Command::REST;
+        let motion = self.motion(view);
+        let mut worst = None;
+        let mut demand = |reason| worst = StopReason::worse(worst, Some(reason));
         if view.base.emergency_stop {
-            return Some(StopReason::EmergencyStop);
+            demand(StopReason::EmergencyStop);
         }
         if view.base.stalled {
-            return Some(StopReason::Stalled);
+            demand(StopReason::Stalled);
+        }
+        let fast = limits.plan(limits.speed_max, 0, &motion);
+        for sonar in 0..N {
+            let hazard = &view.hazard[sonar];
+            let closing = &ring.sonars()[sonar].closing;
+            let near = fast.is_none_or(|plan| !limits.fits(hazard, closing, &plan));
+            if moving && hazard.too_fast && near {
+                demand(StopReason::ClassExceeded {
+                    sonar,
+                    bound: limits.class_speed(Class::Unknown),
+                });
+            }
+            if moving && hazard.stuck {
+                demand(StopReason::SensorStuck {
+                    sonar,
+                    range: hazard.range,
+                });
+            }
+        }
+        if let Some(last) = self.last_tick {
+            match view.now.since(last) {
+                None => demand(StopReason::ClockWentBack),
+                Some(elapsed) if moving && elapsed > limits.reaction_time as u64 => {
+                    demand(StopReason::LoopLate {
+                        elapsed: elapsed.min(i32::MAX as u64) as i32,
+                        bound: limits.reaction_time,
+                    });
+                }
+                Some(_) => {}
+            }
         }
         if !view.base.motors_enabled {
-            return Some(StopReason::MotorsDisabled);
+            demand(StopReason::MotorsDisabled);
         }
         for (sonar, reading) in view.sonar.iter().enumerate() {
             match reading {
-                SonarReading::Stale => return Some(StopReason::SonarStale { sonar }),
-                SonarReading::Invalid => return Some(StopReason::SonarInvalid { sonar }),
-                SonarReading::TooNear => return Some(StopReason::TooNear { sonar }),
+                SonarReading::Stale => demand(StopReason::SonarStale { sonar }),
+                SonarReading::Invalid => demand(StopReason::SonarInvalid { sonar }),
+                SonarReading::TooNear => demand(StopReason::TooNear { sonar }),
                 SonarReading::Echo(_) | SonarReading::NoEcho(_) => {}
             }
         }
-        let minimum = self.limits.min_distance + margin;
+        let minimum = limits.min_distance + margin;
         for (sonar, at) in ring.sonars().iter().enumerate() {
-            let range = view.range[sonar];
+            let range = view.hazard[sonar].range;
             if at.forward && range <= minimum {
-                return Some(StopReason::MinDistance {
+                demand(StopReason::MinDistance {
                     sonar,
                     range,
                     minimum,
@@ -569,44 +711,74 @@ impl Shield {
         }
         if let Some(obstacle) = &view.obstacle {
             if obstacle.speed.saturated {
-                return Some(StopReason::ObstacleTooFast);
+                demand(StopReason::ObstacleTooFast);
             }
-            let (distance, obstacle_speed) = approach(obstacle);
+            let (distance, obstacle_speed) = Self::approach(obstacle);
             let distance = (distance - margin).max(0);
-            let closing = self.speed_bound(view) + obstacle_speed;
-            if self.limits.contact_within_stop_time(distance, closing) {
-                return Some(StopReason::ContactTime { distance, closing });
+            let own = if motion.backward { 0 } else { motion.speed };
+            let closing = own.saturating_add(obstacle_speed);
+            if limits.contact_within_stop_time(distance, closing) {
+                demand(StopReason::ContactTime { distance, closing });
             }
         }
         // No margin here: what is admitted just above this is a creep, and something that stands
         // still this close must not hold the robot for ever.
-        let required = self.limits.required_clearance(0);
-        for (sonar, &clearance) in view.clearance.iter().enumerate() {
-            if clearance < required {
-                return Some(StopReason::Clearance {
-                    sonar,
-                    clearance,
-                    required,
-                });
+        if let Some(plan) = limits.plan(1, 0, &Motion::REST) {
+            for (sonar, at) in ring.sonars().iter().enumerate() {
+                let hazard = &view.hazard[sonar];
+                if !limits.fits(hazard, &at.closing, &plan) {
+                    let needed = limits.needed(hazard, &at.closing, &plan, plan.time);
+                    demand(StopReason::Clearance {
+                        sonar,
+                        bearing: at.heading.get().to_degrees() as i32,
+                        clearance: hazard.clearance,
+                        required: ((needed + 999) / 1000).clamp(0, i64::from(i32::MAX)) as i32,
+                        class: hazard.class,
+                    });
+                }
             }
         }
-        None
+        worst
     }
 
-    /// The robot is no faster than this, in mm/s: what was measured and it may have gained since,
-    /// or what it was told last. At most 11,000: measured speeds go up to 10 m/s.
-    fn speed_bound<const N: usize>(&self, view: &View<N>) -> i32 {
+    /// How the robot may be moving now. What was measured is at most 10 m/s and 20 rad/s.
+    fn motion<const N: usize>(&self, view: &View<N>) -> Motion {
         let limits = &self.limits;
+        let turn_rate = millimetres_up(view.turn_rate.abs()).max(self.last.turn_rate.abs());
+        // Wheels that turn are measured as turning: after a command to rest, 0 is rest.
+        if view.speed == 0.0 && self.last.speed == 0 {
+            return Motion {
+                speed: 0,
+                backward: false,
+                turn_rate,
+            };
+        }
         let age = view.odometry_age.min(limits.reaction_time as u64) as i32;
-        let gained = divide_up(limits.acceleration * age, 1000).min(1_000);
-        (millimetres_up(view.speed.abs()) + gained).max(self.last.speed)
+        let gained = divide_up(limits.acceleration * age, 1000);
+        let measured = millimetres_up(view.speed.abs()) + limits.speed_error + gained;
+        Motion {
+            speed: measured.max(self.last.speed.abs()),
+            backward: view.speed < 0.0 || (view.speed == 0.0 && self.last.speed < 0),
+            turn_rate,
+        }
+    }
+
+    /// Distance left before contact (mm, at least 0) and speed (mm/s) of an obstacle.
+    fn approach(obstacle: &crate::track::Obstacle) -> (i32, i32) {
+        let distance = millimetres_down(obstacle.distance.get()) - obstacle.contact_range;
+        (distance.max(0), millimetres_up(obstacle.speed.value.get()))
     }
 
     /// Turns a law's advice into a command, or into rest. To be called once per tick, after
     /// [`assess`](Self::assess) judged the same view. Any bit pattern of advice is allowed.
-    pub fn admit<const N: usize>(&mut self, advice: Advice, view: &View<N>) -> Verdict {
+    pub fn admit<const N: usize>(
+        &mut self,
+        advice: Advice,
+        view: &View<N>,
+        ring: &Ring<N>,
+    ) -> Verdict {
         if !(advice.speed.is_finite() && advice.turn_rate.is_finite()) {
-            self.halt(StopReason::AdviceInvalid);
+            self.halt(StopReason::AdviceInvalid, view.now);
         }
         // A pause between ticks gives no licence to leap.
         let elapsed = self
@@ -615,74 +787,92 @@ impl Shield {
             .unwrap_or(0)
             .min(self.limits.reaction_time as u64) as i32;
         self.last_tick = Some(view.now);
-        let limits = &self.limits;
-        let room = Room::new(view);
-        let speed_bound = self.speed_bound(view);
-        let (speed, limit) = if self.stop.is_none() {
-            let advised = (advice.speed * 1000.0) as i32;
-            // What is out of sight does not make the robot faster (ER-X1).
-            let unseen = view.obstacle.is_some_and(|obstacle| !obstacle.seen_now);
-            let gaining = if unseen { 0 } else { elapsed };
-            let admission =
-                limits.admissible_speed(self.last.speed, advised, gaining, speed_bound, room);
-            (admission.speed, admission.limit)
-        } else {
-            (0, None)
+        let free = self.stop.is_none();
+        let turns = !self.latched && self.stop.is_none_or(StopReason::may_turn);
+        let unseen = view.obstacle.is_some_and(|obstacle| !obstacle.seen_now);
+        let mut advised = Command {
+            speed: (advice.speed * 1000.0) as i32,
+            turn_rate: (advice.turn_rate * 1000.0) as i32,
         };
-        let turn_rate = if self.stop.is_none_or(StopReason::may_turn) {
-            let fastest = if speed == 0 {
-                speed_bound
-            } else {
-                speed_bound.max(speed + limits.speed_gain())
+        // A stopped robot may turn on the spot and back off, if that is what the law advises.
+        if !free && advised.speed > 0 {
+            advised = Command::REST;
+        }
+        let mut admission = Admission {
+            command: Command::REST,
+            limit: None,
+        };
+        if turns {
+            let surroundings = Surroundings {
+                hazard: &view.hazard,
+                ring,
+                motion: self.motion(view),
+                ahead: view
+                    .obstacle
+                    .as_ref()
+                    .map(Self::approach),
             };
-            limits.admissible_turn_rate(
-                self.last.turn_rate,
-                (advice.turn_rate * 1000.0) as i32,
-                elapsed,
-                room.clearance.saturating_sub(limits.way_to_rest(fastest)),
-            )
-        } else {
-            0
-        };
-        self.verdict(Command { speed, turn_rate }, limit)
+            // What is out of sight does not make the robot faster (ER-X1).
+            let gaining = if unseen { 0 } else { elapsed };
+            admission =
+                self.limits
+                    .admissible(advised, self.last, [gaining, elapsed], &surroundings);
+        }
+        let limited = matches!(
+            admission.limit,
+            Some(Limit::Clearance { .. } | Limit::ContactTime)
+        );
+        let action = Action::Run
+            .join(if limited { Action::Limit } else { Action::Run })
+            .join(if unseen { Action::Slow } else { Action::Run });
+        self.verdict(admission, action, view.now)
     }
 
     /// The verdict of a tick without a view: rest.
     pub fn refuse(&mut self, reason: StopReason, now: Instant) -> Verdict {
-        self.halt(reason);
+        self.halt(reason, now);
         if self.last_tick.is_none_or(|last| now > last) {
             self.last_tick = Some(now);
         }
-        self.verdict(Command::REST, None)
+        let admission = Admission {
+            command: Command::REST,
+            limit: None,
+        };
+        self.verdict(admission, Action::Run, now)
     }
 
-    fn verdict(&mut self, command: Command, limit: Option<Limit>) -> Verdict {
+    fn verdict(&mut self, admission: Admission, action: Action, now: Instant) -> Verdict {
+        let Admission { command, limit } = admission;
+        self.monitor
+            .told(command.speed.saturating_abs(), now, &self.limits);
         self.last = command;
+        let stopped = self.stop.map_or(Action::Run, |_| Action::Stop);
+        let latched = if self.latched {
+            Action::LatchedStop
+        } else {
+            Action::Run
+        };
         Verdict {
             command,
+            action: action.join(stopped).join(latched),
             stop: self.stop,
             limit,
         }
     }
 }
 
-/// Distance left before contact (mm, at least 0) and speed (mm/s) of an obstacle.
-fn approach(obstacle: &crate::track::Obstacle) -> (i32, i32) {
-    let distance = millimetres_down(obstacle.distance.get()) - obstacle.contact_range;
-    (distance.max(0), millimetres_up(obstacle.speed.value.get()))
-}
-
-/// The greatest speed in 0..=`wish` (at most 4095 mm/s) that is admitted, where admission only
-/// gets harder with speed; 0 if none is. Twelve steps, whatever `admitted` says.
-pub fn greatest(wish: i32, admitted: impl Fn(i32) -> bool) -> i32 {
-    let mut speed = 0;
-    let mut step = 2048;
-    while step > 0 {
-        let next = speed + step;
-        if next <= wish && admitted(next) {
-            speed = next;
-        }
+/// The greatest number in 0..=`wish` that is admitted, where admission only gets harder with size;
+/// 0 if none is. Looks at `steps` numbers (up to 30), whatever `admitted` says, and finds those
+/// below 2 to the power of `steps`.
+pub fn greatest(steps: u32, wish: i32, admitted: impl Fn(i32) -> bool) -> i32 {
+    let mut found = 0;
+    let mut step = 1 << steps.min(30);
+    for _ in 0..steps.min(30) {
         step /= 2;
+        let next = found + step;
+        if next <= wish && admitted(next) {
+            found = next;
+        }
     }
-    speed
+    found
 }

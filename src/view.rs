@@ -1,16 +1,17 @@
 //! The world as it is believed to be: the observation, judged, with memory.
 //!
 //! Losing sight of something is no proof that it left (ER-X1). Two memories hold on to it: for
-//! the shield, each sonar's last echo, moved towards the robot as fast as robot and obstacle may
-//! close; for the law, the place of the one obstacle it avoids. Both let go only when the place
-//! is seen to be free often enough, or when the hold time is over.
+//! the shield, each sonar's last echo, with the way that the robot has gone since; for the law, the
+//! place of the one obstacle it avoids. Both let go only when the place is seen to be free often
+//! enough, or when the hold time is over.
 
 use crate::config::Config;
 use crate::math;
 use crate::observation::{BaseStatus, Observation, OdometrySample, SonarReading, classify};
 use crate::quantity::{Angle, Instant, Length, in_range};
-use crate::ring::Ring;
-use crate::shield::{StopReason, millimetres_down, millimetres_up, milliseconds};
+use crate::ring::{Ring, Sonar};
+use crate::failsafe::StopReason;
+use crate::shield::{millimetres_down, millimetres_up, milliseconds};
 use crate::track::{self, Obstacle, Track};
 use nalgebra::Vector2;
 
@@ -52,6 +53,36 @@ pub struct GoalView {
     pub distance: f32,
 }
 
+/// How fast a thing may move, as far as its echoes tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// It has agreed with the robot's own motion for `still_samples` readings.
+    Still,
+    /// A person, or anything else.
+    Unknown,
+}
+
+/// What one sonar is believed to have in front of it, and all that happened since it was seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hazard {
+    /// Least range when it was measured, mm.
+    pub range: i32,
+    /// Clearance of the hull then, less the error of the range, mm. May be negative.
+    pub clearance: i32,
+    /// Time since, ms.
+    pub age: i32,
+    /// The robot's own way since, forward and backward, mm.
+    pub way: [i32; 2],
+    /// By how much the robot has turned since, mrad.
+    pub turned: i32,
+    /// How fast it may be.
+    pub class: Class,
+    /// It comes nearer faster than anything the promise allows for.
+    pub too_fast: bool,
+    /// The sonar reads the same although the robot drives towards whatever it reads.
+    pub stuck: bool,
+}
+
 /// The validated world of one tick, for a robot with `N` sonars.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View<const N: usize> {
@@ -61,17 +92,16 @@ pub struct View<const N: usize> {
     pub pose: Pose,
     /// Measured forward speed in m/s, −10 to 10.
     pub speed: f32,
-    /// How long ago that was measured, ms.
+    /// Measured turn rate in rad/s, −20 to 20.
+    pub turn_rate: f32,
+    /// How long ago these were measured, ms.
     pub odometry_age: u64,
     /// The way to the goal.
     pub goal: GoalView,
     /// The judged reading of each sonar.
     pub sonar: [SonarReading; N],
-    /// Least range that each sonar is believed to have in front of it, in millimetres.
-    pub range: [i32; N],
-    /// Least clearance of the hull from whatever each sonar saw, in millimetres, allowing for the
-    /// time since it was seen. May be negative.
-    pub clearance: [i32; N],
+    /// What each sonar is believed to have in front of it.
+    pub hazard: [Hazard; N],
     /// The obstacle the law avoids, if there is one in sight or in memory.
     pub obstacle: Option<Obstacle>,
     /// Free range to the left and to the right of straight ahead.
@@ -82,41 +112,99 @@ pub struct View<const N: usize> {
     pub guard: Option<StopReason>,
 }
 
-/// The last echo of one sonar.
+/// How far the robot has gone altogether: sums that never shrink, rounded up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Odometer {
+    /// Ways forward and backward, mm.
+    pub way: [i64; 2],
+    /// Turns either way, mrad.
+    pub turned: i64,
+}
+
+impl Odometer {
+    /// Adds the way from one pose to the next.
+    #[must_use]
+    pub fn advanced(self, from: &Pose, to: &Pose) -> Self {
+        let offset = to.position - from.position;
+        let heading = from.heading.get();
+        let along = offset.x * math::cos(heading) + offset.y * math::sin(heading);
+        let way = i64::from(millimetres_up(math::norm(offset)));
+        let turn = i64::from(millimetres_up(to.heading.minus(from.heading).get().abs()));
+        let mut sum = self;
+        let direction = &mut sum.way[usize::from(along < 0.0)];
+        *direction = direction.saturating_add(way);
+        sum.turned = sum.turned.saturating_add(turn);
+        sum
+    }
+}
+
+/// Ways and times longer than this count as this: no sonar reaches so far, nothing is held so long.
+const LONGEST: i64 = 10_000;
+
+/// The growth of a sum, at most [`LONGEST`].
+fn grown(from: i64, to: i64) -> i32 {
+    to.saturating_sub(from).clamp(0, LONGEST) as i32
+}
+
+/// Time from one instant to a later one in ms, at most [`LONGEST`]; out of order counts as that.
+fn elapsed(from: Instant, to: Instant) -> i32 {
+    to.since(from)
+        .map_or(LONGEST as i32, |age| age.min(LONGEST as u64) as i32)
+}
+
+/// One reading that was an echo.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Echo {
+    range: i32,
+    taken_at: Instant,
+    odometer: Odometer,
+}
+
+impl Echo {
+    /// How much nearer a thing that stands still can have come at least and at most, mm, for the
+    /// way that the robot has gone since.
+    fn approach(&self, odometer: &Odometer, sonar: &Sonar) -> [i32; 2] {
+        let [ahead, back] = [0, 1].map(|i| grown(self.odometer.way[i], odometer.way[i]));
+        let turned = grown(self.odometer.turned, odometer.turned);
+        let [least, most] = sonar.closing.face;
+        let (least, most) = ((least - turned).max(-1000), (most + turned).min(1000));
+        // The face is no farther than 3 m from the centre, and usually much nearer.
+        let lever = millimetres_up(math::norm(sonar.position)) * turned.min(1000) / 1000;
+        [
+            (least * ahead - most * back) / 1000 - lever - 1,
+            (most * ahead - least * back) / 1000 + lever + 1,
+        ]
+    }
+}
+
+/// The echo that a sonar's memory holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Held {
-    range: i32,
-    seen: Instant,
+    echo: Echo,
+    /// Way and turn that the robot may have done between the reading and the odometer's time.
+    lag: [i32; 2],
+    /// Its place in the odometry frame, if the pose was known.
+    place: Option<Vector2<f32>>,
     /// Echoes in a row from farther away.
     farther: u32,
     /// When the last of them was measured: one that is looked at twice counts once.
     counted: Instant,
 }
 
-impl Held {
-    const fn new(range: i32, seen: Instant) -> Self {
-        Self {
-            range,
-            seen,
-            farther: 0,
-            counted: seen,
-        }
-    }
-}
-
-/// What one sonar is believed to have in front of it, in millimetres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Bound {
-    /// Least range, as it was when it was measured.
-    pub range: i32,
-    /// Least range by now, if robot and obstacle have closed as fast as they may since.
-    pub reachable: i32,
-}
-
 /// The memory of one sonar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EchoMemory {
     held: Option<Held>,
+    /// The latest echo, whatever came of it.
+    latest: Option<Echo>,
+    /// The echo with which later ones must agree if the thing is still.
+    anchor: Option<Echo>,
+    /// Echoes in a row that agreed with the robot's own motion.
+    agreed: u32,
+    /// Echoes in a row that came nearer faster than the promise allows for.
+    too_fast: u32,
+    /// The way forward at which the sonar began to read what it reads.
+    unchanged_since: i64,
 }
 
 /// What is remembered from tick to tick.
@@ -124,6 +212,9 @@ pub struct EchoMemory {
 pub struct Memory<const N: usize> {
     sonar: [EchoMemory; N],
     track: Option<Track>,
+    odometer: Odometer,
+    /// The last pose.
+    pose: Option<Pose>,
     /// Time of the tick before.
     last: Option<Instant>,
 }
@@ -133,6 +224,8 @@ impl<const N: usize> Default for Memory<N> {
         Self {
             sonar: [EchoMemory::default(); N],
             track: None,
+            odometer: Odometer::default(),
+            pose: None,
             last: None,
         }
     }
@@ -152,30 +245,52 @@ impl<const N: usize> Memory<N> {
         config: &Config,
     ) -> Result<View<N>, StopReason> {
         let now = observation.now;
-        let mut sonar = [SonarReading::Stale; N];
-        let mut range = [0; N];
-        let mut clearance = [0; N];
-        // What was there in the tick before has been looked at.
-        let mut fresh = [false; N];
-        for i in 0..N {
-            let sample = observation.sonar[i];
-            sonar[i] = classify(
+        let odometry = judge_odometry(observation.odometry, now, config);
+        let pose = odometry.as_ref().ok().map(|odometry| odometry.pose);
+        if let Some(pose) = pose {
+            if let Some(before) = self.pose {
+                self.odometer = self.odometer.advanced(&before, &pose);
+            }
+            self.pose = Some(pose);
+        }
+        let sonar = observation.sonar.map(|sample| {
+            classify(
                 sample,
                 now,
                 length(config.sonar_range_min),
                 length(config.sonar_range_max),
                 milliseconds(config.sonar_age_max),
-            );
-            let taken_at = sample.map_or(now, |sample| sample.taken_at);
+            )
+        });
+        // What was there in the tick before has been looked at.
+        let mut fresh = [false; N];
+        let mut hazard = [Hazard::NONE; N];
+        for i in 0..N {
+            let taken_at = observation.sonar[i].map_or(now, |sample| sample.taken_at);
             fresh[i] = self.last.is_none_or(|last| taken_at > last);
-            let bound = self.sonar[i].update(measured(sonar[i]), taken_at, now, config);
-            range[i] = bound.range;
-            clearance[i] = bound.reachable - ring.sonars()[i].contact_range;
+            let memory = &self.sonar[i];
+            let look = Look {
+                measured: measured(sonar[i]),
+                taken_at,
+                now,
+                odometer: self.odometer,
+                pose,
+                covered: pose.is_some_and(|pose| {
+                    memory.place().is_some_and(|place| {
+                        is_looked_at(pose.to_robot(place), &sonar, ring, config)
+                    })
+                }),
+            };
+            hazard[i] = self.sonar[i].update(&look, &ring.sonars()[i], config);
         }
-
         self.last = Some(now);
 
-        let (pose, speed, odometry_age) = judge_odometry(observation.odometry, now, config)?;
+        let Odometry {
+            pose,
+            speed,
+            turn_rate,
+            age: odometry_age,
+        } = odometry?;
         let to_goal = goal - pose.position;
         let goal = GoalView {
             heading: Angle::radians(math::atan2(to_goal.y, to_goal.x)).unwrap_or(Angle::ZERO),
@@ -196,11 +311,11 @@ impl<const N: usize> Memory<N> {
             now,
             pose,
             speed,
+            turn_rate,
             odometry_age,
             goal,
             sonar,
-            range,
-            clearance,
+            hazard,
             obstacle,
             room: room(&sonar, ring, config),
             base: observation.base,
@@ -217,68 +332,243 @@ fn length(metres: f32) -> Length {
 /// Echoes of one thing scatter by less than this, in millimetres.
 const SCATTER: i32 = 100;
 
+/// A robot that drove this far, mm, towards what a sonar reads must see it change.
+const STUCK_WAY: i64 = 400;
+
+impl Hazard {
+    /// Nothing seen, which is as bad as can be.
+    const NONE: Self = Self {
+        range: 0,
+        clearance: 0,
+        age: LONGEST as i32,
+        way: [LONGEST as i32; 2],
+        turned: LONGEST as i32,
+        class: Class::Unknown,
+        too_fast: false,
+        stuck: false,
+    };
+}
+
+/// What a sonar's memory is shown in a tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// The measured range, mm; none if no echo came back.
+    pub measured: Option<i32>,
+    /// When it was measured.
+    pub taken_at: Instant,
+    /// The tick's time.
+    pub now: Instant,
+    /// How far the robot has gone.
+    pub odometer: Odometer,
+    /// Where the robot is, if that is known.
+    pub pose: Option<Pose>,
+    /// Some sonar has an echo whose cone covers the place of what is held.
+    pub covered: bool,
+}
+
 impl EchoMemory {
-    /// Takes in a measured range (mm; none if no echo came back) and holds on to it until it is
-    /// seen to be gone (view.INV-2, view.INV-3).
-    pub fn update(
-        &mut self,
-        measured: Option<i32>,
-        taken_at: Instant,
-        now: Instant,
-        config: &Config,
-    ) -> Bound {
-        let hold_time = milliseconds(config.hold_time);
-        // The way that robot and obstacle can close, or part, in a time. Ages are at most the hold
-        // time or the greatest age of a reading, 10 s; anything else counts as that.
-        let closing = millimetres_up(config.obstacle_speed_max + config.speed_max);
-        let way = |from: Instant, to: Instant| {
-            let age = to.since(from).unwrap_or(10_000).min(10_000) as i32;
-            (closing * age + 999) / 1000
+    /// Where what is held was seen, in the odometry frame.
+    fn place(&self) -> Option<Vector2<f32>> {
+        self.held.and_then(|held| held.place)
+    }
+
+    /// Takes in a look and holds on to what was heard until its place is seen to be free or the
+    /// hold time is over (view.INV-2, view.INV-3).
+    pub fn update(&mut self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
+        if let Some(range) = look.measured {
+            self.compare(range, look, sonar, config);
+        }
+        self.hold(look, sonar, config);
+        self.hazard(look, sonar, config)
+    }
+
+    /// Compares a new echo with those before it: does the thing stand still, is it too fast, does
+    /// the sonar hear at all?
+    fn compare(&mut self, range: i32, look: &Look, sonar: &Sonar, config: &Config) {
+        let echo = Echo {
+            range,
+            taken_at: look.taken_at,
+            odometer: look.odometer,
         };
-        // A reading from before the echo that is held says nothing of what came after it.
-        let since = |old: &Held| {
-            if taken_at < old.seen {
-                0
-            } else {
-                way(old.seen, taken_at)
+        let Some(latest) = self.latest else {
+            (self.latest, self.anchor) = (Some(echo), Some(echo));
+            self.unchanged_since = look.odometer.way[0];
+            return;
+        };
+        // A reading that is looked at twice counts once.
+        if look.taken_at <= latest.taken_at {
+            return;
+        }
+        // What has not been heard for a while may be another thing by now.
+        let gap = elapsed(latest.taken_at, look.taken_at);
+        if u64::from(gap.unsigned_abs()) > milliseconds(config.sonar_age_max) {
+            self.agreed = 0;
+            self.anchor = None;
+        }
+        let tolerance = millimetres_up(config.still_tolerance);
+        let anchor = self.anchor.unwrap_or(latest);
+        let [least, most] = anchor.approach(&look.odometer, sonar);
+        let nearer = anchor.range - range;
+        if nearer >= least - tolerance && nearer <= most + tolerance {
+            self.agreed = self.agreed.saturating_add(1);
+            // From time to time the comparison begins anew, or the robot's own way would explain
+            // more and more.
+            if self.agreed % (config.still_samples as u32).max(1) == 0 {
+                self.anchor = Some(echo);
+            }
+        } else {
+            self.agreed = 0;
+            self.anchor = Some(echo);
+        }
+
+        let [_, most] = latest.approach(&look.odometer, sonar);
+        let turned = grown(latest.odometer.turned, look.odometer.turned).min(1000);
+        // A quarter more than the bound, and what turning towards a slanted wall explains.
+        let explained = way(config.obstacle_speed_max * 1.25, gap)
+            + most
+            + 2 * (latest.range.min(10_000) * turned / 1000)
+            + tolerance;
+        self.too_fast = if latest.range - range > explained {
+            self.too_fast.saturating_add(1)
+        } else {
+            0
+        };
+        if range != latest.range {
+            self.unchanged_since = look.odometer.way[0];
+        }
+        self.latest = Some(echo);
+    }
+
+    /// Holds the echo that counts.
+    fn hold(&mut self, look: &Look, sonar: &Sonar, config: &Config) {
+        let hold_time = milliseconds(config.hold_time);
+        let new = |range| {
+            let late = elapsed(look.taken_at, look.now);
+            let point = sonar.position + sonar.axis * (range as f32 / 1000.0);
+            Held {
+                echo: Echo {
+                    range,
+                    taken_at: look.taken_at,
+                    odometer: look.odometer,
+                },
+                lag: [
+                    way(config.speed_max, late),
+                    way(config.turn_rate_max, late),
+                ],
+                place: look.pose.map(|pose| pose.to_world(point)),
+                farther: 0,
+                counted: look.taken_at,
             }
         };
-        self.held = match (self.held, measured) {
+        // A reading from before the echo that is held says nothing of what came after it.
+        let receded = |old: &Held| {
+            if look.taken_at < old.echo.taken_at {
+                return 0;
+            }
+            let [ahead, back] = [0, 1].map(|i| grown(old.echo.odometer.way[i], look.odometer.way[i]));
+            way(
+                config.obstacle_speed_max,
+                elapsed(old.echo.taken_at, look.taken_at),
+            ) + ahead
+                + back
+        };
+        let expired = |old: &Held| {
+            look.now
+                .since(old.echo.taken_at)
+                .is_none_or(|age| age > hold_time)
+        };
+        self.held = match (self.held, look.measured) {
             // An echo from farther away than the same thing can have gone is another thing's: it
-            // counts only when it keeps coming. Any other echo counts at once.
-            (Some(old), Some(range)) if range > old.range + since(&old) + SCATTER => {
-                let farther = old.farther + u32::from(taken_at > old.counted);
+            // counts only when it keeps coming, and only while the place of the first is looked at.
+            (Some(old), Some(range)) if range > old.echo.range + receded(&old) + SCATTER => {
+                let counts = look.covered && look.taken_at > old.counted;
+                let farther = old.farther + u32::from(counts);
                 let gone = farther >= config.confirm_samples as u32;
-                let expired = now.since(old.seen).is_none_or(|age| age > hold_time);
-                Some(if gone || expired {
-                    Held::new(range, taken_at)
+                Some(if gone || expired(&old) {
+                    new(range)
                 } else {
                     Held {
                         farther,
-                        counted: taken_at,
+                        counted: old.counted.max(look.taken_at),
                         ..old
                     }
                 })
             }
-            (_, Some(range)) => Some(Held::new(range, taken_at)),
-            // No echo is no proof: only time lets go.
-            (Some(old), None) if now.since(old.seen).is_some_and(|age| age <= hold_time) => {
-                Some(Held { farther: 0, ..old })
+            // Looked at again, it is the same reading, with the lag it had.
+            (Some(old), Some(range))
+                if range == old.echo.range && look.taken_at == old.echo.taken_at =>
+            {
+                Some(old)
             }
+            (_, Some(range)) => Some(new(range)),
+            // No echo is no proof: only time lets go.
+            (Some(old), None) if !expired(&old) => Some(Held { farther: 0, ..old }),
             (_, None) => None,
         };
-        let no_echo = millimetres_down(config.sonar_range_max);
-        match self.held {
-            None => Bound {
-                range: no_echo,
-                reachable: no_echo - way(taken_at, now),
-            },
-            Some(held) => Bound {
-                range: held.range,
-                reachable: held.range - way(held.seen, now),
-            },
+    }
+
+    /// What follows for the shield.
+    fn hazard(&self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
+        let loss = sonar.contact_range + millimetres_up(config.range_error);
+        let Some(held) = self.held else {
+            let range = millimetres_down(config.sonar_range_max);
+            let age = elapsed(look.taken_at, look.now);
+            return Hazard {
+                range,
+                clearance: range - loss,
+                age,
+                way: [way(config.speed_max, age); 2],
+                turned: way(config.turn_rate_max, age),
+                class: Class::Unknown,
+                too_fast: false,
+                stuck: false,
+            };
+        };
+        let age = elapsed(held.echo.taken_at, look.now);
+        let confirmed = self
+            .latest
+            .is_some_and(|latest| latest.taken_at == held.echo.taken_at);
+        let recent = u64::from(age.unsigned_abs()) <= milliseconds(config.sonar_age_max);
+        let still = self.agreed >= config.still_samples as u32 && confirmed && recent;
+        let since = &held.echo.odometer;
+        let longest = LONGEST as i32;
+        Hazard {
+            range: held.echo.range,
+            clearance: held.echo.range - loss,
+            age,
+            way: [0, 1].map(|i| {
+                (grown(since.way[i], look.odometer.way[i]) + held.lag[0]).min(longest)
+            }),
+            turned: (grown(since.turned, look.odometer.turned) + held.lag[1]).min(longest),
+            class: if still { Class::Still } else { Class::Unknown },
+            too_fast: self.too_fast >= config.confirm_samples as u32,
+            // Only where whatever is there must come nearer as the robot drives on.
+            stuck: sonar.closing.face[0] >= 500
+                && confirmed
+                && look.odometer.way[0].saturating_sub(self.unchanged_since) >= STUCK_WAY,
         }
     }
+}
+
+/// The way in mm, rounded up, that `speed` (m/s or rad/s, at most 10) makes in `time` (ms, at most
+/// [`LONGEST`]).
+fn way(speed: f32, time: i32) -> i32 {
+    (millimetres_up(speed) * time + 999) / 1000
+}
+
+/// A sonar that has an echo covers this point of the robot's frame.
+fn is_looked_at<const N: usize>(
+    point: Vector2<f32>,
+    sonar: &[SonarReading; N],
+    ring: &Ring<N>,
+    config: &Config,
+) -> bool {
+    let least = math::cos(config.sonar_half_angle);
+    sonar.iter().zip(ring.sonars()).any(|(reading, at)| {
+        let offset = point - at.position;
+        matches!(reading, SonarReading::Echo(_))
+            && offset.dot(&at.axis) >= math::norm(offset) * least
+    })
 }
 
 /// The range of a judged reading in millimetres, rounded down; none if no echo came back.
@@ -290,12 +580,20 @@ fn measured(reading: SonarReading) -> Option<i32> {
     }
 }
 
-/// Checks the odometry: pose, forward speed, and age in ms.
+/// Odometry that was checked; age in ms.
+struct Odometry {
+    pose: Pose,
+    speed: f32,
+    turn_rate: f32,
+    age: u64,
+}
+
+/// Checks the odometry.
 fn judge_odometry(
     sample: Option<OdometrySample>,
     now: Instant,
     config: &Config,
-) -> Result<(Pose, f32, u64), StopReason> {
+) -> Result<Odometry, StopReason> {
     let sample = sample.ok_or(StopReason::OdometryStale)?;
     let age = now
         .since(sample.taken_at)
@@ -311,9 +609,12 @@ fn judge_odometry(
             ),
             heading: Angle::radians(sample.heading)?,
         };
-        in_range("turn rate", sample.turn_rate, -20.0, 20.0, "rad/s")?;
-        let speed = in_range("speed", sample.speed, -10.0, 10.0, "m/s")?;
-        Ok((pose, speed, age))
+        Ok(Odometry {
+            pose,
+            speed: in_range("speed", sample.speed, -10.0, 10.0, "m/s")?,
+            turn_rate: in_range("turn rate", sample.turn_rate, -20.0, 20.0, "rad/s")?,
+            age,
+        })
     };
     checked().map_err(|_: crate::quantity::OutOfRange| StopReason::OdometryInvalid)
 }

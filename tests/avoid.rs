@@ -18,7 +18,7 @@ use sidestep::math;
 use sidestep::observation::Sighting;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep::track::Obstacle;
 use sidestep::view::{Memory, View};
 use sidestep_spec::avoid as law;

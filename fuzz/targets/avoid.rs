@@ -13,7 +13,7 @@ use sidestep::law::Law;
 use sidestep::observation::{BaseStatus, Sighting, SonarReading};
 use sidestep::preset;
 use sidestep::quantity::{Instant, Length};
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep::track::Obstacle;
 use sidestep::view::{GoalView, Pose, View};
 use sidestep_spec::{avoid as law, kinematics as drive};

@@ -14,7 +14,7 @@ use sidestep::law::{Advice, Law};
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, Sighting, SonarSample};
 use sidestep::preset;
 use sidestep::quantity::Instant;
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep_spec::avoid as avoidance;
 use std::f32::consts::{PI, TAU};
 

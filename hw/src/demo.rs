@@ -3,7 +3,7 @@
 
 use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw};
-use crate::drive::{self, Clock, Ending, Status};
+use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
 use crate::log::Halt;
 use crate::pilot::{Pilot, Tally, settings};
@@ -176,7 +176,7 @@ impl Drop for SetOnDrop<'_> {
 pub fn run(
     scenario: &Scenario,
     options: &Options,
-    interrupted: &AtomicBool,
+    signals: &Signals,
     status: &mut Status,
 ) -> Result<(PathBuf, Summary), Box<dyn Error>> {
     let folder = run_folder(&options.out, scenario.name)?;
@@ -206,7 +206,7 @@ pub fn run(
             || transport::open(&port),
             clock,
             Some(scenario.time_limit_ms),
-            interrupted,
+            signals,
             status,
         );
         drop(end);

@@ -4,6 +4,7 @@ use crate::pilot::Pilot;
 use crate::session::Output;
 use crate::transport::{Transport, TransportError};
 use sidestep::avoid::{contact_time_bound, time_to_collision};
+use sidestep::failsafe::Action;
 use sidestep::law::Law;
 use sidestep::quantity::{Angle, Length, Speed};
 use sidestep::view::View;
@@ -47,6 +48,35 @@ pub enum Ending {
     TimeLimit,
     /// The session ended by itself.
     Closed,
+}
+
+/// What people ask of a run while it lasts.
+#[derive(Debug, Default)]
+pub struct Signals {
+    /// End it.
+    pub interrupted: AtomicBool,
+    /// Let the robot go on after a latched stop.
+    pub reset: AtomicBool,
+}
+
+impl Signals {
+    /// Nothing asked yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            interrupted: AtomicBool::new(false),
+            reset: AtomicBool::new(false),
+        }
+    }
+
+    /// Takes the lines of standard input: `reset` asks for a reset. Returns when input ends.
+    pub fn listen(&self) {
+        for line in std::io::stdin().lines().map_while(Result::ok) {
+            if line.trim() == "reset" {
+                self.reset.store(true, Ordering::Relaxed);
+            }
+        }
+    }
 }
 
 /// How a run is shown: a line that is rewritten on a terminal, else a line now and then.
@@ -140,17 +170,20 @@ fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>,
     let nearest = decision.view.map_or_else(
         || "     ?".to_owned(),
         |view| {
-            let nearest = view.range.iter().min().copied().unwrap_or(0);
+            let nearest = view.hazard.iter().map(|hazard| hazard.range).min().unwrap_or(0);
             format!("{:4.2} m", f64::from(nearest) / 1000.0)
         },
     );
     let (state, reason) = match (&decision.stop, &decision.limit) {
+        (Some(stop), _) if decision.action == Action::LatchedStop => {
+            ("LATCHED", format!("{stop}; type `reset` to go on"))
+        }
         (Some(stop), _) => ("STOP", stop.to_string()),
         (None, Some(limit)) => (decision.mode, format!("limited: {limit}")),
         (None, None) => (decision.mode, String::new()),
     };
     let key = match &decision.stop {
-        Some(stop) => crate::pilot::kind_of(*stop),
+        Some(stop) => stop.row().cause,
         None => decision.mode,
     };
     let times = decision.view.as_ref().and_then(times).unwrap_or_default();
@@ -182,7 +215,7 @@ pub fn run<L: Law<N>, const N: usize>(
     mut open: impl FnMut() -> Result<Box<dyn Transport>, TransportError>,
     clock: Clock,
     limit: Option<u64>,
-    interrupted: &AtomicBool,
+    signals: &Signals,
     status: &mut Status,
 ) -> Result<Ending, TransportError> {
     let mut port = Some(open()?);
@@ -228,10 +261,13 @@ pub fn run<L: Law<N>, const N: usize>(
                 }
             }
         }
+        if signals.reset.swap(false, Ordering::Relaxed) {
+            pilot.reset(now);
+        }
         show(status, pilot, now);
 
         if ending.is_none() {
-            ending = if interrupted.load(Ordering::Relaxed) {
+            ending = if signals.interrupted.load(Ordering::Relaxed) {
                 Some(Ending::Operator)
             } else if pilot.tally().arrived.is_some() {
                 Some(Ending::Arrived)

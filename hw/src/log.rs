@@ -40,6 +40,9 @@ pub struct Told {
     pub w: i32,
     /// What the law was doing.
     pub mode: String,
+    /// The most severe of what was done about anything, if anything was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub action: Option<String>,
     /// Why the robot was made to stand still, if it was.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop: Option<String>,
@@ -69,6 +72,11 @@ pub enum Record {
         reason: Halt,
         /// What the robot was told.
         told: Told,
+    },
+    /// Somebody reset a latched stop.
+    Reset {
+        /// Milliseconds since the start.
+        t: u64,
     },
     /// The base's counters were set to zero: the odometry frame begins here.
     Origin {

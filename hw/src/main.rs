@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::demo::{self, Options};
-use sidestep_hw::drive::{self, Clock, Ending, Status};
+use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_hw::replay::{self, Columns};
@@ -15,7 +15,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 /// Collision avoidance for a robot base with sonars, under a shield that is proved to stop in time.
 ///
@@ -146,17 +146,19 @@ fn read_config(file: Option<&Path>) -> Result<RobotConfig, Box<dyn Error>> {
     Ok(config::parse(&text, &file.display().to_string())?)
 }
 
-/// Set by Ctrl-C and by SIGTERM.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+/// Interrupted by Ctrl-C and by SIGTERM, reset by a line on standard input.
+static SIGNALS: Signals = Signals::new();
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let handler = ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed));
+    let handler = ctrlc::set_handler(|| SIGNALS.interrupted.store(true, Ordering::Relaxed));
     if let Err(error) = handler {
         // Without it Ctrl-C would end the program with the robot still under way.
         eprintln!("sidestep: cannot catch Ctrl-C: {error}");
         return ExitCode::FAILURE;
     }
+    // Ends with the program.
+    std::thread::spawn(|| SIGNALS.listen());
     match run(arguments.command) {
         Ok(code) => code,
         Err(error) => {
@@ -244,7 +246,7 @@ fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
     let mut contacts = 0;
     for scenario in demo::scenarios(options)? {
-        let (folder, summary) = demo::run(&scenario, options, &INTERRUPTED, &mut status)?;
+        let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();
         status.keep(&format!(
             "picture: {}\n",
@@ -282,7 +284,7 @@ fn run_base<const N: usize>(
         || transport::open(port),
         Clock::new(1.0),
         None,
-        &INTERRUPTED,
+        &SIGNALS,
         &mut status,
     )
     .inspect_err(|_| {
@@ -348,11 +350,11 @@ fn emulate(
     println!("{}; its goal is {x},{y}", scenario.description);
     let clock = Clock::new(1.0);
     let simulation = std::thread::scope(|scope| {
-        let server = scope.spawn(|| serve(simulation, line, clock, &INTERRUPTED));
-        while !INTERRUPTED.load(Ordering::Relaxed) {
+        let server = scope.spawn(|| serve(simulation, line, clock, &SIGNALS.interrupted));
+        while !SIGNALS.interrupted.load(Ordering::Relaxed) {
             std::thread::sleep(std::time::Duration::from_millis(50));
             if seconds.is_some_and(|seconds| clock.now() as f64 >= seconds * 1000.0) {
-                INTERRUPTED.store(true, Ordering::Relaxed);
+                SIGNALS.interrupted.store(true, Ordering::Relaxed);
             }
         }
         server.join()

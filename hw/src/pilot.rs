@@ -13,7 +13,9 @@ use sidestep::controller::{Controller, Decision};
 use sidestep::law::Law;
 use sidestep::observation::Observation;
 use sidestep::quantity::{Instant, OutOfRange};
-use sidestep::shield::StopReason;
+use sidestep::failsafe::{Action, StopReason};
+use sidestep::shield::Limits;
+use sidestep::view::Class;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::Write;
 
@@ -234,6 +236,7 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                         now,
                         if resumed { "ready again" } else { "ready" }.to_owned(),
                     );
+                    self.note(now, promise(self.controller.shield().limits()));
                 }
                 Event::AlreadyOpen => {
                     self.note(now, "closed a session that was open already".to_owned());
@@ -308,7 +311,7 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             *self
                 .tally
                 .stops
-                .entry(kind_of(reason).to_owned())
+                .entry(reason.row().cause.to_owned())
                 .or_default() += 1;
             let position = decision
                 .view
@@ -329,6 +332,13 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
     pub fn halt(&mut self, reason: Halt, now: u64) {
         let decision = self.controller.halt(reason.into(), Instant(now));
         self.tick(now, &decision, |t, told| Record::Halt { t, reason, told });
+    }
+
+    /// Lets the robot go on after a latched stop, once nothing demands a stop any more.
+    pub fn reset(&mut self, now: u64) {
+        self.controller.reset();
+        self.write(&Record::Reset { t: now });
+        self.note(now, "reset by the operator".to_owned());
     }
 
     /// Stops the robot and ends the session.
@@ -434,6 +444,18 @@ impl From<Halt> for StopReason {
     }
 }
 
+/// The promise in force, in words.
+#[must_use]
+pub fn promise(limits: &Limits) -> String {
+    let metres = |speed| f64::from(speed) / 1000.0;
+    format!(
+        "promise: at rest before contact with people and whatever is unknown up to {:.2} m/s, and \
+         with what has been seen to stand still up to {:.2} m/s",
+        metres(limits.class_speed(Class::Unknown)),
+        metres(limits.class_speed(Class::Still)),
+    )
+}
+
 /// A decision as it is logged.
 #[must_use]
 pub fn told<const N: usize>(decision: &Decision<N>) -> Told {
@@ -441,32 +463,9 @@ pub fn told<const N: usize>(decision: &Decision<N>) -> Told {
         v: decision.command.speed(),
         w: decision.command.turn_rate(),
         mode: decision.mode.to_owned(),
+        action: (decision.action != Action::Run).then(|| decision.action.to_string()),
         stop: decision.stop.map(|reason| reason.to_string()),
         limit: decision.limit.map(|limit| limit.to_string()),
-    }
-}
-
-/// The kind of a reason, without its numbers.
-#[must_use]
-pub fn kind_of(reason: StopReason) -> &'static str {
-    match reason {
-        StopReason::Starting => "starting",
-        StopReason::SonarStale { .. } => "sonar stale",
-        StopReason::SonarInvalid { .. } => "sonar invalid",
-        StopReason::TooNear { .. } => "too near",
-        StopReason::MinDistance { .. } => "minimum distance",
-        StopReason::ContactTime { .. } => "contact time",
-        StopReason::ObstacleTooFast => "obstacle too fast",
-        StopReason::Clearance { .. } => "clearance",
-        StopReason::OdometryStale => "odometry stale",
-        StopReason::OdometryInvalid => "odometry invalid",
-        StopReason::ClockWentBack => "clock went back",
-        StopReason::AdviceInvalid => "advice invalid",
-        StopReason::MotorsDisabled => "motors disabled",
-        StopReason::Stalled => "stall or bumper",
-        StopReason::EmergencyStop => "emergency stop",
-        StopReason::LinkLost => "link lost",
-        StopReason::Operator => "operator",
     }
 }
 

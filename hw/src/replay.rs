@@ -7,6 +7,7 @@ use crate::pilot::told;
 use nalgebra::Vector2;
 use sidestep::arcos::{BaseParameters, Frame, StandardInformation};
 use sidestep::avoid::Avoid;
+use sidestep::config::{Config, Parameters};
 use sidestep::controller::Controller;
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, SonarSample};
 use sidestep::quantity::Instant;
@@ -73,6 +74,10 @@ fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, Stri
                 base.restart();
                 continue;
             }
+            Record::Reset { .. } => {
+                controller.reset();
+                continue;
+            }
             Record::Event { .. } => continue,
         };
         ticks += 1;
@@ -93,8 +98,8 @@ fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, Stri
 /// How the columns of a table of ranges become sonars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Columns {
-    /// Three sonars, left, front and right: the least range of the columns that look within 30° of
-    /// straight ahead, and of those that look 30° to 90° to either side.
+    /// Three wide sonars, left, front and right: the least range of the columns that look within
+    /// 30° of straight ahead, and of those that look 30° to 90° to either side.
     Thirds,
     /// A ring: every column is a sonar.
     Ring,
@@ -158,7 +163,7 @@ pub fn table(
     }
     match (columns, width) {
         (_, 0) => Err("no row of ranges".to_owned()),
-        (Columns::Thirds, _) => feed(&rows, config, period, [90_f32, 0.0, -90.0], |row| {
+        (Columns::Thirds, _) => feed(&rows, config, period, [60_f32, 0.0, -60.0], |row| {
             let mut least = [f32::INFINITY; 3];
             for (column, range) in row.iter().enumerate() {
                 let bearing = direction(column, width);
@@ -198,18 +203,25 @@ fn feed<const N: usize>(
     bearings: [f32; N],
     ranges: impl Fn(&[f32]) -> [f32; N],
 ) -> Result<Table, String> {
+    // Side by side they see everything from the first to the last, whatever is configured.
+    let between = (bearings[0] - bearings[1]).abs().to_radians();
+    let config = Config::new(Parameters {
+        sonar_half_angle: (between / 2.0).min(0.8),
+        ..*config.core
+    })
+    .map_err(|error| error.to_string())?;
     // The sonars sit on the robot's edge and look straight out.
     let placements = bearings.map(|bearing| {
         let heading = bearing.to_radians();
         Placement {
-            x: config.core.robot_radius * heading.cos(),
-            y: config.core.robot_radius * heading.sin(),
+            x: config.robot_radius * heading.cos(),
+            y: config.robot_radius * heading.sin(),
             heading,
         }
     });
-    let ring = Ring::new(&placements, &config.core).map_err(|error| error.to_string())?;
+    let ring = Ring::new(&placements, &config).map_err(|error| error.to_string())?;
     let goal = Vector2::new(100.0, 0.0);
-    let mut controller = Controller::new(config.core, ring, Avoid::new(config.core), goal)
+    let mut controller = Controller::new(config, ring, Avoid::new(config), goal)
         .map_err(|error| error.to_string())?;
     let mut table = Table::default();
     for (i, (_, row)) in rows.iter().enumerate() {
@@ -243,14 +255,14 @@ fn feed<const N: usize>(
         *table.modes.entry(decision.mode.to_owned()).or_default() += 1;
         if let Some(reason) = decision.stop {
             table.stopped += 1;
-            let kind = crate::pilot::kind_of(reason).to_owned();
+            let kind = reason.row().cause.to_owned();
             *table.stops.entry(kind).or_default() += 1;
         }
         let near = ring
             .sonars()
             .iter()
             .zip(ranges)
-            .any(|(sonar, range)| sonar.forward && range <= config.core.min_distance);
+            .any(|(sonar, range)| sonar.forward && range <= config.min_distance);
         if near {
             table.near += 1;
             if decision.stop.is_none() || decision.command.speed() != 0 {

@@ -17,7 +17,7 @@ use sidestep::arcos::{
     Tail, command,
 };
 use sidestep::avoid::Avoid;
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep_hw::config::RobotConfig;
 use sidestep_hw::log::{Log, Record};
 use sidestep_hw::pilot::{Pilot, settings};

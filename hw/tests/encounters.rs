@@ -12,7 +12,7 @@ use sidestep::arcos::BaseParameters;
 use sidestep::avoid::Avoid;
 use sidestep::law::{Advice, Law};
 use sidestep::quantity::Instant;
-use sidestep::shield::StopReason;
+use sidestep::failsafe::StopReason;
 use sidestep::view::{Memory, View};
 use sidestep_hw::base::{self, Base};
 use sidestep_hw::config::RobotConfig;
