@@ -4,11 +4,11 @@
 use super::kani;
 use sidestep::avoid::{self, Avoid, Mode, QuarterTurns, Side, Situation, Trend};
 use sidestep::config::{Config, Parameters};
+use sidestep::failsafe::StopReason;
 use sidestep::law::Law;
 use sidestep::observation::Sighting;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
-use sidestep::failsafe::StopReason;
 use sidestep_spec::avoid as law;
 
 /// Any length there is.

@@ -398,6 +398,9 @@ struct Latch {
 /// time of a trend looks like this much.
 const STILL: f32 = 0.15;
 
+/// Things whose distances to the side differ by no more than this, in m, may be one wall.
+const SAME_WALL: f32 = 0.1;
+
 /// S1's avoidance law: M1 with E5, E6 and E7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Avoid {
@@ -463,7 +466,15 @@ impl Avoid {
     ) -> bool {
         let offset = obstacle.position - view.pose.position;
         let bearing = obstacle.direction.minus(heading).get();
-        let lateral = math::norm(offset) * math::sin(bearing).abs();
+        let distance = math::norm(offset);
+        let mut lateral = distance * math::sin(bearing.abs());
+        // A sonar does not say where in its cone a thing is. If it can be as far to the side as what
+        // stands right beside the robot, it is the same wall.
+        let outward = (bearing.abs() + self.config.sonar_half_angle).min(FRAC_PI_2);
+        let beside = view.beside[usize::from(bearing < 0.0)].get();
+        if (distance * math::sin(outward) - beside).abs() <= SAME_WALL {
+            lateral = lateral.max(beside);
+        }
         bearing.abs() < FRAC_PI_2
             && lateral <= self.config.robot_radius + self.config.corridor_margin
     }
@@ -472,6 +483,9 @@ impl Avoid {
     fn hold_latch<const N: usize>(&mut self, view: &View<N>) {
         match (self.mode, &view.obstacle) {
             (Mode::Cruise | Mode::Reorient | Mode::Arrived, _) => self.latch = None,
+            // A robot at rest can wait and see what it is that it turns away from.
+            (Mode::Stop, Some(obstacle))
+                if self.latch.is_none() && obstacle.trend == Trend::Unknown => {}
             (Mode::Maneuver | Mode::Stop, Some(obstacle)) if self.latch.is_none() => {
                 let reference = view.goal.heading;
                 let bearing = obstacle.direction.minus(reference);
@@ -513,7 +527,7 @@ impl Avoid {
                 (view.goal.heading, if seen { cruise } else { cruise / 2.0 })
             }
             (Mode::Stop, Some((heading, _, _))) => (heading, 0.0),
-            (Mode::Stop, None) | (Mode::Arrived, _) => (view.pose.heading, 0.0),
+            (Mode::Stop | Mode::Arrived, _) => (view.pose.heading, 0.0),
         }
     }
 }

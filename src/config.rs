@@ -189,7 +189,13 @@ impl Config {
         )?;
         in_range("cruise_speed", p.cruise_speed, 0.01, p.speed_max, "m/s")?;
         // However weak the brakes, the sums of the shield stay inside their integers.
-        in_range("braking_share", p.braking_share, 0.1 / p.braking, 1.0, "share")?;
+        in_range(
+            "braking_share",
+            p.braking_share,
+            0.1 / p.braking,
+            1.0,
+            "share",
+        )?;
         // What is still is not faster than what may be anything.
         in_range(
             "still_speed_max",

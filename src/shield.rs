@@ -75,6 +75,9 @@ const fn divide_up(dividend: i32, divisor: i32) -> i32 {
 /// Ways and times to rest are known for this many speeds.
 const RUNGS: usize = 64;
 
+/// A command is scaled down by this many steps.
+const SHARES: i32 = 64;
+
 /// What it takes to come to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Rung {
@@ -104,14 +107,13 @@ pub struct Limits {
     latch_time: u64,
     resume_clearance: i32,
     resume_samples: u32,
-    rungs: [Rung; RUNGS + 1],
 }
 
 impl Limits {
     /// The limits of a configuration, rounded to the safe side.
     #[must_use]
     pub fn new(config: &Config) -> Self {
-        let mut limits = Self {
+        Self {
             speed_max: millimetres_down(config.speed_max),
             reverse_speed_max: millimetres_down(config.reverse_speed_max),
             turn_rate_max: millimetres_down(config.turn_rate_max),
@@ -128,18 +130,7 @@ impl Limits {
             latch_time: milliseconds(config.latch_time),
             resume_clearance: millimetres_up(config.resume_clearance),
             resume_samples: config.resume_samples as u32,
-            rungs: [Rung::default(); RUNGS + 1],
-        };
-        let top = limits.speed_max + limits.speed_gain();
-        for k in 0..=RUNGS {
-            let fastest = (top * k as i32 + RUNGS as i32 - 1) / RUNGS as i32;
-            limits.rungs[k] = Rung {
-                fastest,
-                way: limits.way_to_rest(fastest),
-                time: limits.time_to_rest(fastest),
-            };
         }
-        limits
     }
 
     /// Greatest forward speed in mm/s.
@@ -233,49 +224,6 @@ impl Limits {
             + divide_up(self.obstacle_speed * self.time_to_rest(fastest), 1000)
     }
 
-    /// The first rung that is no slower than `fastest`; none if the robot is faster than it may
-    /// ever be told.
-    fn rung(&self, fastest: i32) -> Option<Rung> {
-        // How many are slower: bisection, seven steps.
-        let below = greatest(7, RUNGS as i32 + 1, |k| {
-            self.rungs[(k - 1).clamp(0, RUNGS as i32) as usize].fastest < fastest
-        });
-        self.rungs.get(below as usize).copied()
-    }
-
-    /// What the robot may do from now until it rests, if it is told `speed` and `turn_rate` (mm/s,
-    /// mrad/s) for one reaction time and rest then. None if it is faster than it may ever be told.
-    #[must_use]
-    pub fn plan(&self, speed: i32, turn_rate: i32, motion: &Motion) -> Option<Plan> {
-        let told = speed.saturating_abs().min(12_000);
-        let same = (speed < 0) == motion.backward || speed == 0;
-        // What it rolls on with, and what it is told: the first alone if it is told to rest.
-        let rolling = if same && speed != 0 {
-            motion.speed.max(told + self.speed_gain())
-        } else {
-            motion.speed
-        };
-        let mut plan = Plan {
-            way: [0; 2],
-            time: self.reaction_time,
-            turn: 0,
-            turn_rate: turn_rate.saturating_abs().max(motion.turn_rate),
-        };
-        if rolling > 0 {
-            let rung = self.rung(rolling)?;
-            plan.way[usize::from(motion.backward)] = rung.way;
-            plan.time = rung.time;
-        }
-        if !same {
-            let rung = self.rung(told + self.speed_gain())?;
-            plan.way[usize::from(speed < 0)] = rung.way;
-            plan.time = plan.time.max(rung.time);
-        }
-        let turn = (i64::from(plan.turn_rate) * i64::from(plan.time) + 999) / 1000;
-        plan.turn = turn.min(10_000) as i32;
-        Some(plan)
-    }
-
     /// SH.3: the clearance that a plan needs from a thing, in thousandths of a millimetre, if all
     /// motion ends within `time` ms from now: the robot's own way since the thing was seen and to
     /// rest, as far as it can lead towards the thing, and the thing's way in that time.
@@ -309,6 +257,81 @@ impl Limits {
     pub const fn contact_within_stop_time(&self, distance: i32, closing: i32) -> bool {
         distance as i64 * 1000 <= self.stop_time as i64 * closing as i64
     }
+}
+
+/// The limits, with the ways and times to rest that follow from them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Guard {
+    limits: Limits,
+    rungs: [Rung; RUNGS + 1],
+}
+
+impl Guard {
+    /// The guard of a configuration.
+    #[must_use]
+    pub fn new(config: &Config) -> Self {
+        let limits = Limits::new(config);
+        let top = limits.speed_max + limits.speed_gain();
+        let mut rungs = [Rung::default(); RUNGS + 1];
+        for (k, rung) in (0..).zip(rungs.iter_mut()) {
+            let fastest = divide_up(top * k, RUNGS as i32);
+            *rung = Rung {
+                fastest,
+                way: limits.way_to_rest(fastest),
+                time: limits.time_to_rest(fastest),
+            };
+        }
+        Self { limits, rungs }
+    }
+
+    /// The limits.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// The first rung that is no slower than `fastest`; none if the robot is faster than it may
+    /// ever be told.
+    fn rung(&self, fastest: i32) -> Option<Rung> {
+        // How many are slower: bisection, seven steps.
+        let below = greatest(7, RUNGS as i32 + 1, |k| {
+            self.rungs[(k - 1).clamp(0, RUNGS as i32) as usize].fastest < fastest
+        });
+        self.rungs.get(below as usize).copied()
+    }
+
+    /// What the robot may do from now until it rests, if it is told `speed` and `turn_rate` (mm/s,
+    /// mrad/s) for one reaction time and rest then. None if it is faster than it may ever be told.
+    #[must_use]
+    pub fn plan(&self, speed: i32, turn_rate: i32, motion: &Motion) -> Option<Plan> {
+        let told = speed.saturating_abs().min(12_000);
+        let same = (speed < 0) == motion.backward || speed == 0;
+        // What it rolls on with, and what it is told: the first alone if it is told to rest.
+        let rolling = if same && speed != 0 {
+            motion.speed.max(told + self.limits.speed_gain())
+        } else {
+            motion.speed
+        };
+        let mut plan = Plan {
+            way: [0; 2],
+            time: self.limits.reaction_time,
+            turn: 0,
+            turn_rate: turn_rate.saturating_abs().max(motion.turn_rate),
+        };
+        if rolling > 0 {
+            let rung = self.rung(rolling)?;
+            plan.way[usize::from(motion.backward)] = rung.way;
+            plan.time = rung.time;
+        }
+        if !same {
+            let rung = self.rung(told + self.limits.speed_gain())?;
+            plan.way[usize::from(speed < 0)] = rung.way;
+            plan.time = plan.time.max(rung.time);
+        }
+        let turn = (i64::from(plan.turn_rate) * i64::from(plan.time) + 999) / 1000;
+        plan.turn = turn.min(10_000) as i32;
+        Some(plan)
+    }
 
     /// SH.5: of the commands that scale the advice down (mm/s, mrad/s) the fastest that the base
     /// reaches from `last` and for which there is room; rest if there is none. The curvature is
@@ -321,13 +344,14 @@ impl Limits {
         elapsed: [i32; 2],
         surroundings: &Surroundings<'_, N>,
     ) -> Admission {
+        let limits = &self.limits;
         let [gaining, elapsed] = elapsed;
         let backward = advised.speed < 0;
         let wanted = advised.speed.saturating_abs();
         let most = if !backward {
-            self.speed_max
+            limits.speed_max
         } else if surroundings.ring.looks_back() {
-            self.reverse_speed_max
+            limits.reverse_speed_max
         } else {
             0
         };
@@ -336,52 +360,42 @@ impl Limits {
         } else {
             0
         };
-        let reachable = kept.saturating_add(self.acceleration * gaining / 1000);
-        let wish = wanted.min(most).min(reachable);
+        let reachable = kept.saturating_add(limits.acceleration * gaining / 1000);
+        let speed = wanted.min(most).min(reachable);
 
-        let step = self.turn_acceleration * elapsed / 1000;
-        let turn_wish = advised
+        let step = limits.turn_acceleration * elapsed / 1000;
+        let wish = advised
             .turn_rate
             .clamp(
                 last.turn_rate.min(0).saturating_sub(step),
                 last.turn_rate.max(0).saturating_add(step),
             )
-            .clamp(-self.turn_rate_max, self.turn_rate_max);
+            .clamp(-limits.turn_rate_max, limits.turn_rate_max);
+        let turn_rate = greatest(13, wish.saturating_abs(), |rate| {
+            no_tighter(speed, rate, advised)
+        });
 
-        // Speeds by 64ths of the greatest, the wish itself last.
+        // That, and smaller ones by 64ths: speeds rounded up, turn rates down.
         let command = |k: i32| {
-            let speed = wish.min((self.speed_max * k + RUNGS as i32 - 1) / RUNGS as i32);
-            let turn_rate = greatest(13, turn_wish.saturating_abs(), |rate| {
-                no_tighter(speed, rate, advised)
-            });
+            let speed = (speed * k + (SHARES - 1)) / SHARES;
+            let turn_rate = turn_rate * k / SHARES;
             Command {
                 speed: if backward { -speed } else { speed },
-                turn_rate: if turn_wish < 0 { -turn_rate } else { turn_rate },
+                turn_rate: if wish < 0 { -turn_rate } else { turn_rate },
             }
         };
-        let driving = greatest(7, RUNGS as i32, |k| surroundings.admit(self, command(k)));
-        let mut admitted = Command::REST;
-        if wish > 0 && driving > 0 {
-            admitted = command(driving);
-        } else if advised.speed == 0 {
-            let turn = |rate: i32| Command {
-                speed: 0,
-                turn_rate: if turn_wish < 0 { -rate } else { rate },
-            };
-            let rate = greatest(13, turn_wish.saturating_abs(), |rate| {
-                surroundings.admit(self, turn(rate))
-            });
-            admitted = turn(rate);
-        }
+        let share = greatest(7, SHARES, |k| surroundings.admit(self, command(k)));
+        let mut admitted = command(share);
         // Asked once more, so that what is returned does not rest on the search.
-        let fits = admitted == Command::REST || surroundings.admit(self, admitted);
-        if !fits || !no_tighter(admitted.speed.saturating_abs(), admitted.turn_rate, advised) {
+        let fits = surroundings.admit(self, admitted)
+            && no_tighter(admitted.speed.saturating_abs(), admitted.turn_rate, advised);
+        if !fits {
             admitted = Command::REST;
         }
-        let limit = if admitted.speed.saturating_abs() < wish {
-            Some(surroundings.obstruction(self, command(driving + 1)))
+        let limit = if share < SHARES && (speed > 0 || turn_rate > 0) {
+            Some(surroundings.obstruction(self, command(share + 1)))
         } else {
-            (wish < wanted).then_some(Limit::Base)
+            (speed < wanted).then_some(Limit::Base)
         };
         Admission {
             command: admitted,
@@ -447,8 +461,9 @@ pub struct Surroundings<'a, const N: usize> {
 impl<const N: usize> Surroundings<'_, N> {
     /// Whether there is room for a command.
     #[must_use]
-    pub fn admit(&self, limits: &Limits, command: Command) -> bool {
-        limits
+    pub fn admit(&self, guard: &Guard, command: Command) -> bool {
+        let limits = &guard.limits;
+        guard
             .plan(command.speed, command.turn_rate, &self.motion)
             .is_some_and(|plan| self.tight(limits, &plan).is_none())
             && !self.touches_in_time(limits, command.speed)
@@ -474,8 +489,9 @@ impl<const N: usize> Surroundings<'_, N> {
     }
 
     /// Why there is no room for a command.
-    fn obstruction(&self, limits: &Limits, command: Command) -> Limit {
-        let plan = limits.plan(command.speed, command.turn_rate, &self.motion);
+    fn obstruction(&self, guard: &Guard, command: Command) -> Limit {
+        let limits = &guard.limits;
+        let plan = guard.plan(command.speed, command.turn_rate, &self.motion);
         match plan.and_then(|plan| self.tight(limits, &plan)) {
             Some(sonar) => Limit::Clearance { sonar },
             None if plan.is_none() => Limit::Base,
@@ -533,7 +549,7 @@ pub struct Verdict {
 /// The shield and what it remembers: the last command, and whether the robot is stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shield {
-    limits: Limits,
+    guard: Guard,
     monitor: Monitor,
     last: Command,
     last_tick: Option<Instant>,
@@ -553,7 +569,7 @@ impl Shield {
     #[must_use]
     pub fn new(config: &Config) -> Self {
         Self {
-            limits: Limits::new(config),
+            guard: Guard::new(config),
             monitor: Monitor::new(),
             last: Command::REST,
             last_tick: None,
@@ -568,7 +584,7 @@ impl Shield {
     /// The limits.
     #[must_use]
     pub const fn limits(&self) -> &Limits {
-        &self.limits
+        &self.guard.limits
     }
 
     /// The stop holds until it is reset.
@@ -591,17 +607,19 @@ impl Shield {
     /// `resume_samples` ticks in a row; a latched one until it is reset as well.
     pub fn assess<const N: usize>(&mut self, view: &View<N>, ring: &Ring<N>) -> Option<StopReason> {
         let margin = if self.stop.is_some() {
-            self.limits.resume_clearance
+            self.guard.limits.resume_clearance
         } else {
             0
         };
         let measured_at = Instant(view.now.0.saturating_sub(view.odometry_age));
         let measured = millimetres_up(view.speed.abs());
-        let weak = self.monitor.measured(measured, measured_at, &self.limits);
+        let weak = self
+            .monitor
+            .measured(measured, measured_at, &self.guard.limits);
         let cause = StopReason::worse(
             weak.then(|| StopReason::BrakesWeak {
                 measured,
-                bound: self.monitor.bound(&self.limits),
+                bound: self.monitor.bound(&self.guard.limits),
             }),
             self.demand(view, ring, margin),
         );
@@ -610,7 +628,7 @@ impl Shield {
             self.overdue_since = None;
             if !self.latched {
                 self.clear = self.clear.saturating_add(1);
-                if self.clear >= self.limits.resume_samples {
+                if self.clear >= self.guard.limits.resume_samples {
                     self.stop = None;
                 }
             }
@@ -630,7 +648,7 @@ impl Shield {
         let overdue = self
             .overdue_since
             .and_then(|since| now.since(since))
-            .is_some_and(|lasted| lasted >= self.limits.latch_time);
+            .is_some_and(|lasted| lasted >= self.guard.limits.latch_time);
         if !self.latched {
             self.stop = Some(reason);
             // Before everything was there for the first time, nothing has been lost.
@@ -646,7 +664,7 @@ impl Shield {
         ring: &Ring<N>,
         margin: i32,
     ) -> Option<StopReason> {
-        let limits = &self.limits;
+        let limits = &self.guard.limits;
         let moving = self.last != Command::REST;
         let motion = self.motion(view);
         let mut worst = None;
@@ -657,7 +675,7 @@ impl Shield {
         if view.base.stalled {
             demand(StopReason::Stalled);
         }
-        let fast = limits.plan(limits.speed_max, 0, &motion);
+        let fast = self.guard.plan(limits.speed_max, 0, &motion);
         for sonar in 0..N {
             let hazard = &view.hazard[sonar];
             let closing = &ring.sonars()[sonar].closing;
@@ -723,7 +741,7 @@ impl Shield {
         }
         // No margin here: what is admitted just above this is a creep, and something that stands
         // still this close must not hold the robot for ever.
-        if let Some(plan) = limits.plan(1, 0, &Motion::REST) {
+        if let Some(plan) = self.guard.plan(1, 0, &Motion::REST) {
             for (sonar, at) in ring.sonars().iter().enumerate() {
                 let hazard = &view.hazard[sonar];
                 if !limits.fits(hazard, &at.closing, &plan) {
@@ -743,7 +761,7 @@ impl Shield {
 
     /// How the robot may be moving now. What was measured is at most 10 m/s and 20 rad/s.
     fn motion<const N: usize>(&self, view: &View<N>) -> Motion {
-        let limits = &self.limits;
+        let limits = &self.guard.limits;
         let turn_rate = millimetres_up(view.turn_rate.abs()).max(self.last.turn_rate.abs());
         // Wheels that turn are measured as turning: after a command to rest, 0 is rest.
         if view.speed == 0.0 && self.last.speed == 0 {
@@ -785,7 +803,7 @@ impl Shield {
             .last_tick
             .and_then(|last| view.now.since(last))
             .unwrap_or(0)
-            .min(self.limits.reaction_time as u64) as i32;
+            .min(self.guard.limits.reaction_time as u64) as i32;
         self.last_tick = Some(view.now);
         let free = self.stop.is_none();
         let turns = !self.latched && self.stop.is_none_or(StopReason::may_turn);
@@ -807,15 +825,12 @@ impl Shield {
                 hazard: &view.hazard,
                 ring,
                 motion: self.motion(view),
-                ahead: view
-                    .obstacle
-                    .as_ref()
-                    .map(Self::approach),
+                ahead: view.obstacle.as_ref().map(Self::approach),
             };
             // What is out of sight does not make the robot faster (ER-X1).
             let gaining = if unseen { 0 } else { elapsed };
             admission =
-                self.limits
+                self.guard
                     .admissible(advised, self.last, [gaining, elapsed], &surroundings);
         }
         let limited = matches!(
@@ -844,7 +859,7 @@ impl Shield {
     fn verdict(&mut self, admission: Admission, action: Action, now: Instant) -> Verdict {
         let Admission { command, limit } = admission;
         self.monitor
-            .told(command.speed.saturating_abs(), now, &self.limits);
+            .told(command.speed.saturating_abs(), now, &self.guard.limits);
         self.last = command;
         let stopped = self.stop.map_or(Action::Run, |_| Action::Stop);
         let latched = if self.latched {

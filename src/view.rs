@@ -6,11 +6,11 @@
 //! enough, or when the hold time is over.
 
 use crate::config::Config;
+use crate::failsafe::StopReason;
 use crate::math;
 use crate::observation::{BaseStatus, Observation, OdometrySample, SonarReading, classify};
 use crate::quantity::{Angle, Instant, Length, in_range};
 use crate::ring::{Ring, Sonar};
-use crate::failsafe::StopReason;
 use crate::shield::{millimetres_down, millimetres_up, milliseconds};
 use crate::track::{self, Obstacle, Track};
 use nalgebra::Vector2;
@@ -106,6 +106,8 @@ pub struct View<const N: usize> {
     pub obstacle: Option<Obstacle>,
     /// Free range to the left and to the right of straight ahead.
     pub room: [Length; 2],
+    /// Distance from the robot's centre line to what stands right beside it, left and right.
+    pub beside: [Length; 2],
     /// The base's own status.
     pub base: BaseStatus,
     /// Why the shield will not let the robot move, if so.
@@ -201,8 +203,11 @@ pub struct EchoMemory {
     anchor: Option<Echo>,
     /// Echoes in a row that agreed with the robot's own motion.
     agreed: u32,
-    /// Echoes in a row that came nearer faster than the promise allows for.
-    too_fast: u32,
+    /// By how much, mm, the thing has come nearer than the promise allows for, over the echoes that
+    /// follow each other so closely that they are one thing's.
+    excess: i32,
+    /// How many echoes in a row added to it.
+    excessive: u32,
     /// The way forward at which the sonar began to read what it reads.
     unchanged_since: i64,
 }
@@ -318,6 +323,7 @@ impl<const N: usize> Memory<N> {
             hazard,
             obstacle,
             room: room(&sonar, ring, config),
+            beside: beside(&sonar, ring, config),
             base: observation.base,
             guard: None,
         })
@@ -331,6 +337,12 @@ fn length(metres: f32) -> Length {
 
 /// Echoes of one thing scatter by less than this, in millimetres.
 const SCATTER: i32 = 100;
+
+/// Turning by no more than this between two readings, mrad, a sonar looks in the same direction.
+const SAME_DIRECTION: i32 = 30;
+
+/// What is nearer by more than this explains, m/s, is another thing: nobody runs that fast indoors.
+const FASTEST: f32 = 4.0;
 
 /// A robot that drove this far, mm, towards what a sonar reads must see it change.
 const STUCK_WAY: i64 = 400;
@@ -421,18 +433,19 @@ impl EchoMemory {
             self.anchor = Some(echo);
         }
 
+        // Something that comes nearer faster than the bound, and a quarter more, adds up; another
+        // thing, which a jump or a turn brings into the cone, does not.
         let [_, most] = latest.approach(&look.odometer, sonar);
-        let turned = grown(latest.odometer.turned, look.odometer.turned).min(1000);
-        // A quarter more than the bound, and what turning towards a slanted wall explains.
-        let explained = way(config.obstacle_speed_max * 1.25, gap)
-            + most
-            + 2 * (latest.range.min(10_000) * turned / 1000)
-            + tolerance;
-        self.too_fast = if latest.range - range > explained {
-            self.too_fast.saturating_add(1)
+        let turned = grown(latest.odometer.turned, look.odometer.turned);
+        let nearer = latest.range - range - most;
+        let one_thing = turned <= SAME_DIRECTION && nearer <= way(FASTEST, gap) + tolerance;
+        let excess = nearer - way(config.obstacle_speed_max * 1.25, gap);
+        if one_thing && excess > 0 {
+            self.excess = self.excess.saturating_add(excess);
+            self.excessive = self.excessive.saturating_add(1);
         } else {
-            0
-        };
+            (self.excess, self.excessive) = (0, 0);
+        }
         if range != latest.range {
             self.unchanged_since = look.odometer.way[0];
         }
@@ -451,10 +464,7 @@ impl EchoMemory {
                     taken_at: look.taken_at,
                     odometer: look.odometer,
                 },
-                lag: [
-                    way(config.speed_max, late),
-                    way(config.turn_rate_max, late),
-                ],
+                lag: [way(config.speed_max, late), way(config.turn_rate_max, late)],
                 place: look.pose.map(|pose| pose.to_world(point)),
                 farther: 0,
                 counted: look.taken_at,
@@ -465,7 +475,8 @@ impl EchoMemory {
             if look.taken_at < old.echo.taken_at {
                 return 0;
             }
-            let [ahead, back] = [0, 1].map(|i| grown(old.echo.odometer.way[i], look.odometer.way[i]));
+            let [ahead, back] =
+                [0, 1].map(|i| grown(old.echo.odometer.way[i], look.odometer.way[i]));
             way(
                 config.obstacle_speed_max,
                 elapsed(old.echo.taken_at, look.taken_at),
@@ -536,12 +547,12 @@ impl EchoMemory {
             range: held.echo.range,
             clearance: held.echo.range - loss,
             age,
-            way: [0, 1].map(|i| {
-                (grown(since.way[i], look.odometer.way[i]) + held.lag[0]).min(longest)
-            }),
+            way: [0, 1]
+                .map(|i| (grown(since.way[i], look.odometer.way[i]) + held.lag[0]).min(longest)),
             turned: (grown(since.turned, look.odometer.turned) + held.lag[1]).min(longest),
             class: if still { Class::Still } else { Class::Unknown },
-            too_fast: self.too_fast >= config.confirm_samples as u32,
+            too_fast: self.excess > 2 * millimetres_up(config.still_tolerance)
+                && self.excessive > config.confirm_samples as u32,
             // Only where whatever is there must come nearer as the robot drives on.
             stuck: sonar.closing.face[0] >= 500
                 && confirmed
@@ -617,6 +628,26 @@ fn judge_odometry(
         })
     };
     checked().map_err(|_: crate::quantity::OutOfRange| StopReason::OdometryInvalid)
+}
+
+/// Distance from the robot's centre line to what the sonars that look straight across hear, left
+/// and right.
+fn beside<const N: usize>(
+    sonar: &[SonarReading; N],
+    ring: &Ring<N>,
+    config: &Config,
+) -> [Length; 2] {
+    let mut beside = [length(config.sonar_range_max); 2];
+    for (reading, at) in sonar.iter().zip(ring.sonars()) {
+        let SonarReading::Echo(range) = *reading else {
+            continue;
+        };
+        if at.axis.x.abs() < 0.26 {
+            let side = usize::from(at.axis.y < 0.0);
+            beside[side] = beside[side].min(length(at.position.y.abs() + range.get()));
+        }
+    }
+    beside
 }
 
 /// Least range that the sonars to the left and to the right of straight ahead measure.

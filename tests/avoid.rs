@@ -13,12 +13,12 @@ use sidestep::avoid::{
     self, Arrival, Avoid, Mode, ObstacleSpeed, QuarterTurns, Side, Situation, Trend,
 };
 use sidestep::config::{Config, Parameters};
+use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
 use sidestep::math;
 use sidestep::observation::Sighting;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
-use sidestep::failsafe::StopReason;
 use sidestep::track::Obstacle;
 use sidestep::view::{Memory, View};
 use sidestep_spec::avoid as law;

@@ -8,10 +8,10 @@ use common::{
 };
 use proptest::prelude::*;
 use sidestep::config::Config;
+use sidestep::failsafe::StopReason;
 use sidestep::observation::{Observation, SonarReading, SonarSample, classify};
 use sidestep::quantity::{Angle, Instant, Length, Speed};
 use sidestep::ring::{Placement, Ring};
-use sidestep::failsafe::StopReason;
 use sidestep::view::{Bound, EchoMemory, Memory, View};
 use sidestep_spec::avoid as law;
 use sidestep_spec::view as promise;

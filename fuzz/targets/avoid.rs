@@ -8,12 +8,12 @@ use sidestep::avoid::{
     self, Arrival, Avoid, Mode, ObstacleSpeed, QuarterTurns, Side, Situation, Trend,
 };
 use sidestep::config::Config;
+use sidestep::failsafe::StopReason;
 use sidestep::kinematics::{DifferentialDrive, Twist, WheelRates, velocity};
 use sidestep::law::Law;
 use sidestep::observation::{BaseStatus, Sighting, SonarReading};
 use sidestep::preset;
 use sidestep::quantity::{Instant, Length};
-use sidestep::failsafe::StopReason;
 use sidestep::track::Obstacle;
 use sidestep::view::{GoalView, Pose, View};
 use sidestep_spec::{avoid as law, kinematics as drive};

@@ -10,11 +10,11 @@ use super::settings::{self, Shares};
 use super::watch::{Told, Watched};
 use sidestep::avoid::Avoid;
 use sidestep::config::{Config, FIELDS, Parameters};
+use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, Sighting, SonarSample};
 use sidestep::preset;
 use sidestep::quantity::Instant;
-use sidestep::failsafe::StopReason;
 use sidestep_spec::avoid as avoidance;
 use std::f32::consts::{PI, TAU};
 

@@ -170,7 +170,12 @@ fn show<L: Law<N>, const N: usize>(status: &mut Status, pilot: &mut Pilot<L, N>,
     let nearest = decision.view.map_or_else(
         || "     ?".to_owned(),
         |view| {
-            let nearest = view.hazard.iter().map(|hazard| hazard.range).min().unwrap_or(0);
+            let nearest = view
+                .hazard
+                .iter()
+                .map(|hazard| hazard.range)
+                .min()
+                .unwrap_or(0);
             format!("{:4.2} m", f64::from(nearest) / 1000.0)
         },
     );
