@@ -1,4 +1,5 @@
-//! Chapter `shield`: the guard. See `spec/shield.md`. Millimetres, mm/s, mm/s², ms.
+//! Chapter `shield`: the guard. See `spec/shield.md`. Millimetres, mm/s, mm/s², ms, mrad/s;
+//! cosines in thousandths.
 
 /// The model's numbers.
 #[derive(Clone, Copy, Debug)]
@@ -9,23 +10,38 @@ pub struct Model {
     pub braking: f64,
     /// Reaction time ε, ms.
     pub reaction_time: f64,
-    /// Obstacle speed bound V, mm/s.
+    /// Greatest speed V of the thing, mm/s.
     pub obstacle_speed: f64,
 }
 
 impl Model {
-    /// SH.2: v²/2b + V·v/b.
+    /// SH.2: the way to rest, v·ε + v²/2b.
     #[must_use]
-    pub fn stopping_distance(&self, speed: f64) -> f64 {
-        speed * speed / (2.0 * self.braking) + self.obstacle_speed * speed / self.braking
+    pub fn way_to_rest(&self, speed: f64) -> f64 {
+        speed * self.reaction_time / 1000.0 + speed * speed / (2.0 * self.braking)
     }
 
-    /// SH.3, in the form of Mitsch et al. 2017, Theorem 2:
+    /// SH.2: the time to rest in ms, ε + v/b.
+    #[must_use]
+    pub fn time_to_rest(&self, speed: f64) -> f64 {
+        self.reaction_time + 1000.0 * speed / self.braking
+    }
+
+    /// SH.3 with the cosine κ (0 to 1), the way s since the thing was seen and its age: the
+    /// clearance it had to have then. `fastest` is the robot's greatest speed until it brakes.
+    #[must_use]
+    pub fn needed(&self, fastest: f64, cosine: f64, way: f64, age: f64) -> f64 {
+        cosine * (way + self.way_to_rest(fastest))
+            + self.obstacle_speed * (age + self.time_to_rest(fastest)) / 1000.0
+    }
+
+    /// The published guard of Mitsch et al. 2017, Theorem 2:
     /// v²/2b + V·v/b + (A/b + 1)(A·ε²/2 + ε(v + V)).
     #[must_use]
-    pub fn required_clearance(&self, speed: f64) -> f64 {
+    pub fn published(&self, speed: f64) -> f64 {
         let e = self.reaction_time / 1000.0;
-        self.stopping_distance(speed)
+        speed * speed / (2.0 * self.braking)
+            + self.obstacle_speed * speed / self.braking
             + (self.acceleration / self.braking + 1.0)
                 * (self.acceleration * e * e / 2.0 + e * (speed + self.obstacle_speed))
     }
@@ -33,34 +49,33 @@ impl Model {
 
 // --------------------------------------------------------------- invariants
 
-/// shield.INV-1: a command keeps the limits and never goes backward.
+/// shield.INV-1: a command keeps the limits, forward and backward.
 #[must_use]
-pub fn within_limits(speed: i32, turn_rate: i32, speed_max: i32, turn_rate_max: i32) -> bool {
-    (0..=speed_max).contains(&speed) && (-turn_rate_max..=turn_rate_max).contains(&turn_rate)
-}
-
-/// shield.INV-2: what the integer code asks for is never less than the exact formula of SH.3, both
-/// multiplied by 2b·10⁶ so that nothing is rounded. Speed in mm/s.
-#[must_use]
-pub fn asks_enough(
-    required: i32,
+pub fn within_limits(
     speed: i32,
-    acceleration: i32,
-    braking: i32,
-    reaction_time: i32,
-    obstacle_speed: i32,
+    turn_rate: i32,
+    speed_max: i32,
+    reverse_speed_max: i32,
+    turn_rate_max: i32,
 ) -> bool {
-    let [v, a, b, e, o] =
-        [speed, acceleration, braking, reaction_time, obstacle_speed].map(i64::from);
-    let exact = 1_000_000 * (v * v + 2 * o * v) + (a + b) * (a * e * e + 2000 * e * (v + o));
-    i64::from(required) * 2 * b * 1_000_000 >= exact
+    (-reverse_speed_max..=speed_max).contains(&speed)
+        && (-turn_rate_max..=turn_rate_max).contains(&turn_rate)
 }
 
-/// SH.1, the safe state, exactly: braking now ends before contact, v²/2b + V·v/b ≤ d.
+/// shield.INV-2: way and time to rest are no less than SH.2 gives exactly for a robot that is no
+/// faster than `fastest` until it brakes, multiplied out so that nothing is rounded.
 #[must_use]
-pub fn safe_state(speed: i32, clearance: i32, braking: i32, obstacle_speed: i32) -> bool {
-    let [v, d, b, o] = [speed, clearance, braking, obstacle_speed].map(i64::from);
-    v * v + 2 * o * v <= 2 * b * d
+pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_time: i32) -> bool {
+    let [x, t, w, b, e] = [way, time, fastest, braking, reaction_time].map(i64::from);
+    2000 * b * x >= 2 * b * w * e + 1000 * w * w && b * t >= b * e + 1000 * w
+}
+
+/// SH.1, the safe state, exactly: braking now ends before contact, κ·v²/2b + V·v/b ≤ r. Cosine in
+/// thousandths, `left` in thousandths of a millimetre.
+#[must_use]
+pub fn safe_state(speed: i32, cosine: i32, left: i64, braking: i32, obstacle_speed: i32) -> bool {
+    let [v, k, b, o] = [speed, cosine, braking, obstacle_speed].map(i64::from);
+    k * v * v + 2000 * o * v <= 2 * b * left
 }
 
 /// shield.INV-3: a safe state stays safe through a step.
@@ -69,10 +84,17 @@ pub fn stays_safe(before: bool, after: bool) -> bool {
     !before || after
 }
 
-/// shield.INV-4: a robot that is made to stop gets no forward speed.
+/// shield.INV-4: a robot that is made to stop does not drive forward, and does not move at all
+/// where the reason is not the distance, or the stop is latched.
 #[must_use]
-pub fn stop_has_no_speed(stopped: bool, speed: i32) -> bool {
-    !stopped || speed == 0
+pub fn stop_is_kept(
+    stopped: bool,
+    may_turn: bool,
+    latched: bool,
+    speed: i32,
+    turn_rate: i32,
+) -> bool {
+    !stopped || (speed <= 0 && ((may_turn && !latched) || untrusted_rests(speed, turn_rate)))
 }
 
 /// shield.INV-5: an observation that cannot be trusted yields no motion at all.
@@ -81,75 +103,78 @@ pub fn untrusted_rests(speed: i32, turn_rate: i32) -> bool {
     speed == 0 && turn_rate == 0
 }
 
-/// shield.INV-6: the command gains on the one before by no more than the base accelerates.
+/// shield.INV-6: a command's magnitude grows by no more than the base can gain in the time.
 #[must_use]
 pub fn slew_kept(before: i32, after: i32, acceleration: i32, elapsed_ms: i32) -> bool {
-    i64::from(after) <= i64::from(before) + i64::from(acceleration) * i64::from(elapsed_ms) / 1000
+    let step = i64::from(acceleration) * i64::from(elapsed_ms) / 1000;
+    let (before, after) = (i64::from(before), i64::from(after));
+    (before.min(0) - step..=before.max(0) + step).contains(&after)
 }
 
-/// shield.INV-7: the stop set is monotone: what stops at (d, v) stops nearer and faster.
+/// shield.INV-7: what stops at a distance and a closing speed also stops nearer and faster.
 #[must_use]
-pub fn monotone(stops: bool, stops_nearer_or_faster: bool) -> bool {
-    !stops || stops_nearer_or_faster
+pub fn monotone(stops: bool, nearer_and_faster_stops: bool) -> bool {
+    !stops || nearer_and_faster_stops
 }
 
-/// shield.INV-8: if contact is possible at a time within T, the guard stops. Distances in mm,
-/// closing speed in mm/s, times in ms: in `time` the gap can shrink by closing·time.
+/// shield.INV-8: contact at some time within the stop time makes the guard stop: at that time the
+/// distance can shrink by closing·time.
 #[must_use]
 pub fn sound(distance: i32, closing: i32, time: i32, stops: bool) -> bool {
     let possible = i64::from(distance) * 1000 <= i64::from(closing) * i64::from(time);
     !possible || stops
 }
 
-/// shield.INV-9: a robot that moves has the clearance that its command needs, at every sonar.
+/// shield.INV-9: a robot that moves was admitted by every guard for just that command.
 #[must_use]
-pub fn admitted(speed: i32, required: i32, clearance: i32) -> bool {
-    speed == 0 || required <= clearance
+pub fn admitted(speed: i32, turn_rate: i32, fits: bool) -> bool {
+    untrusted_rests(speed, turn_rate) || fits
 }
 
-/// shield.INV-11: a command that moves the robot was judged at no less than itself, and at no less
-/// than what the robot may be at, less one speed gain.
-#[must_use]
-pub fn judged_at_what_it_may_be(
-    speed: i32,
-    judged_at: i32,
-    speed_bound: i32,
-    speed_gain: i32,
-) -> bool {
-    speed == 0 || (judged_at >= speed && speed_bound <= judged_at + speed_gain)
-}
-
-/// shield.INV-10: the search finds the greatest speed there is up to `wish` and `threshold`.
+/// shield.INV-10: the search finds the greatest number there is up to `wish` and `threshold`.
 #[must_use]
 pub fn greatest(found: i32, wish: i32, threshold: i32) -> bool {
     found == wish.min(threshold)
 }
 
-/// shield.INV-6, for turning: the magnitude grows by no more than the base can gain.
+/// shield.INV-11: the speed for which a plan allows is no less than what the robot may have now,
+/// and no less than what it is told, with one gain, if it is told to move.
 #[must_use]
-pub fn turn_slew_kept(before: i32, after: i32, acceleration: i32, elapsed_ms: i32) -> bool {
-    let step = i64::from(acceleration) * i64::from(elapsed_ms) / 1000;
-    let (before, after) = (i64::from(before), i64::from(after));
-    (before.min(0) - step..=before.max(0) + step).contains(&after)
+pub fn plans_for(fastest: i32, speed: i32, gain: i32, motion: i32) -> bool {
+    fastest >= motion && (speed == 0 || fastest >= speed.abs() + gain)
 }
 
-/// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ d, multiplied by 1000·α; d is the
-/// clearance less the robot's own way to rest.
+/// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ left, multiplied by 1000·α; `left` is
+/// what the robot's own way and the age leave of the clearance, in thousandths of a millimetre.
 #[must_use]
 pub fn turn_ends_before_contact(
     turn_rate: i32,
     acceleration: i32,
     reaction_time: i32,
     obstacle_speed: i32,
-    clearance: i32,
+    left: i64,
 ) -> bool {
-    let [w, a, e, v, d] = [
-        turn_rate,
-        acceleration,
-        reaction_time,
-        obstacle_speed,
-        clearance,
-    ]
-    .map(i64::from);
-    w == 0 || v * (a * e + 1000 * w.abs()) <= 1000 * a * d
+    let [w, a, e, v] = [turn_rate, acceleration, reaction_time, obstacle_speed].map(i64::from);
+    v * (a * e + 1000 * w.abs()) <= a * left
+}
+
+/// shield.INV-13: the path bends no tighter than advised, |ω|/|v| ≤ |ω*|/|v*|, multiplied out, and
+/// neither part is greater than advised.
+#[must_use]
+pub fn no_tighter(speed: i32, turn_rate: i32, advised_speed: i32, advised_turn_rate: i32) -> bool {
+    let [v, w, a, o] = [speed, turn_rate, advised_speed, advised_turn_rate].map(i64::from);
+    w.abs() * a.abs() <= o.abs() * v.abs() && v.abs() <= a.abs() && w.abs() <= o.abs()
+}
+
+/// shield.INV-14: a thing that is nearer, was seen longer ago, since when the robot has gone or
+/// turned farther, or that may be faster, leaves room for nothing that it did not leave before.
+#[must_use]
+pub fn worse_is_no_easier(fits: bool, fits_worse: bool) -> bool {
+    fits || !fits_worse
+}
+
+/// shield.INV-15: nothing drives backward where no sonar looks back.
+#[must_use]
+pub fn sees_where_it_goes(speed: i32, looks_back: bool) -> bool {
+    speed >= 0 || looks_back
 }

@@ -28,8 +28,30 @@ pub fn judged(speed: f32, goal_distance: f32, obstacle_distance: Option<f32>) ->
         && obstacle_distance.is_none_or(|distance| distance >= 0.0 && distance.is_finite())
 }
 
-/// view.INV-5: what may be reached by now is never farther than what was measured.
+/// view.INV-5: what happens after a thing was seen is never forgotten: its age and the robot's own
+/// way and turn are at least what they are.
 #[must_use]
-pub fn reachable_is_nearer(range: i32, reachable: i32) -> bool {
-    reachable <= range
+pub fn nothing_forgotten(believed: [i64; 4], actual: [i64; 4]) -> bool {
+    let mut i = 0;
+    while i < 4 {
+        if believed[i] < actual[i] {
+            return false;
+        }
+        i += 1;
+    }
+    true
+}
+
+/// view.INV-6: a thing counts as still only after that many readings in a row that agreed with the
+/// robot's own motion, the last of them recent.
+#[must_use]
+pub fn still_is_earned(still: bool, readings: u32, needed: u32, age: u64, age_max: u64) -> bool {
+    !still || (readings > needed && age <= age_max)
+}
+
+/// view.INV-7: not to hear what is held makes it no less of a hazard: nearer or as near, older or
+/// as old, and no more trusted.
+#[must_use]
+pub fn losing_sight_frees_nothing(clearance: [i32; 2], age: [i32; 2], unknown: [bool; 2]) -> bool {
+    clearance[1] <= clearance[0] && age[1] >= age[0] && (unknown[1] || !unknown[0])
 }
