@@ -17,7 +17,9 @@ use crate::kani;
 
 pub mod arcos;
 pub mod avoid;
+pub mod failsafe;
 pub mod kinematics;
 pub mod math;
+pub mod monitor;
 pub mod shield;
 pub mod view;

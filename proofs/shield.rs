@@ -6,8 +6,20 @@ use sidestep::config::{Config, Parameters};
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
-use sidestep::shield::{Limits, Room, Shield, greatest};
+use sidestep::ring::Closing;
+use sidestep::shield::{
+    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
+};
+use sidestep::view::{Class, Hazard};
 use sidestep_spec::shield as promise;
+
+/// The configuration of a preset.
+fn checked(parameters: Parameters) -> Config {
+    match Config::new(parameters) {
+        Ok(config) => config,
+        Err(_) => unreachable!(),
+    }
+}
 
 /// The limits of a configuration that differs from the Pioneer preset in whatever `vary` sets.
 fn limits_with(vary: impl Fn(&mut Parameters)) -> Limits {
@@ -32,113 +44,370 @@ pub fn any_in(from: i32, to: i32) -> i32 {
     value
 }
 
-/// SH.3 as integers asks for no less than the formula, for the Pioneer preset and every speed;
-/// it overflows for none.
-//= shield.INV-2
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-pub fn guard_asks_enough() {
-    let limits = pioneer();
-    let speed = any_in(0, limits.speed_max());
-    assert!(promise::asks_enough(
-        limits.required_clearance(speed),
-        speed,
-        limits.acceleration(),
-        limits.braking(),
-        limits.reaction_time(),
-        limits.obstacle_speed(),
-    ));
-    kani::cover!(speed == limits.speed_max(), "full speed");
-    kani::cover!(speed == 0, "rest");
+fn twist(speed: i32, turn_rate: i32) -> Twist {
+    Twist { speed, turn_rate }
 }
 
-/// No configuration asks for more clearance than this, in mm.
-const MOST: i32 = 3_000_000;
+/// Any motion that can be measured or told.
+fn any_motion() -> Motion {
+    Motion {
+        speed: any_in(0, 12_000),
+        backward: kani::any(),
+        turn_rate: any_in(0, 20_000),
+    }
+}
 
-/// The guard's arithmetic does not overflow for any configuration and any speed it may have.
+/// Any hazard that a view can hold.
+pub fn any_hazard() -> Hazard {
+    Hazard {
+        range: any_in(0, 20_000),
+        clearance: any_in(-10_000, 20_000),
+        age: any_in(0, 10_000),
+        way: [any_in(0, 10_000), any_in(0, 10_000)],
+        turned: any_in(0, 10_000),
+        class: any_class(),
+        too_fast: kani::any(),
+        stuck: kani::any(),
+    }
+}
+
+fn any_class() -> Class {
+    if kani::any() {
+        Class::Still
+    } else {
+        Class::Unknown
+    }
+}
+
+/// Way and time to rest are no less than the formula, for a preset and every speed it may have.
+fn rest_is_covered(parameters: Parameters) {
+    let limits = Limits::new(&checked(parameters));
+    let fastest = any_in(0, limits.speed_max() + limits.speed_gain());
+    assert!(promise::covers_rest(
+        limits.way_to_rest(fastest),
+        limits.time_to_rest(fastest),
+        fastest,
+        limits.braking(),
+        limits.reaction_time(),
+    ));
+    kani::cover!(
+        fastest == limits.speed_max() + limits.speed_gain(),
+        "full speed and a gain"
+    );
+    kani::cover!(fastest == 0, "rest");
+}
+
+/// SH.2 for the Pioneer preset.
 //= shield.INV-2
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
-pub fn guard_does_not_overflow() {
+pub fn rest_is_covered_pioneer() {
+    rest_is_covered(preset::PIONEER_3DX);
+}
+
+/// SH.2 for the preset of S1.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn rest_is_covered_2012() {
+    rest_is_covered(preset::SRIKANDI_II_2012);
+}
+
+/// SH.2 for the preset of S2.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn rest_is_covered_2011() {
+    rest_is_covered(preset::SRIKANDI_II_2011);
+}
+
+/// No configuration needs a longer way than this, mm, or a longer time, ms.
+const MOST: i32 = 800_000;
+
+/// Ways and times to rest do not overflow for any configuration and any speed it may have.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn rest_does_not_overflow() {
     let limits = limits_with(|p| {
         p.speed_max = kani::any();
-        p.obstacle_speed_max = kani::any();
         p.acceleration = kani::any();
         p.braking = kani::any();
+        p.braking_share = kani::any();
         p.reaction_time = kani::any();
         p.cruise_speed = 0.01;
     });
-    // Measured speeds go up to 10 m/s, and a little for their age.
-    let speed = any_in(0, 11_000);
-    let required = limits.required_clearance(speed);
-    assert!(limits.way_to_rest(speed) >= 0);
-    assert!((0..=MOST).contains(&required));
-    kani::cover!(required > 500_000, "half a kilometre");
-    kani::cover!(required < 100, "a decimetre");
+    let fastest = any_in(0, 12_000);
+    assert!(limits.speed_max() + limits.speed_gain() <= 12_100);
+    let (way, time) = (limits.way_to_rest(fastest), limits.time_to_rest(fastest));
+    assert!((0..=MOST).contains(&way));
+    assert!((0..=MOST).contains(&time));
+    kani::cover!(way > 500_000, "half a kilometre");
+    kani::cover!(way > 0 && way < 100, "a decimetre");
 }
 
-/// Passive safety is inductive (Pioneer preset): from any safe state, whatever the shield admits,
-/// whatever robot and obstacle then do within the model for one reaction time, the state is safe
-/// again. `clearance` is the true clearance; the shield may see less, never more.
-//= shield.INV-3
+/// A plan allows for the greatest speed that the robot may have: its way and time are those of one
+/// of at least that speed. Pioneer preset, told any speed from rest.
+//= shield.INV-11
+//= shield.INV-2
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-pub fn admitted_motion_stays_safe() {
-    let limits = pioneer();
-    let clearance = any_in(0, 6_000);
-    // What admissible_speed shows of a command that moves the robot (`speed_is_admitted`): it was
-    // judged at a speed no less than the command, one gain below what the robot may be at.
-    let judged_at = any_in(0, limits.speed_max() + limits.speed_gain());
-    kani::assume(limits.required_clearance(judged_at) <= clearance);
-    // One reaction time: the robot is never more than one gain above that.
-    let gain = limits.speed_gain();
-    let after = any_in(0, judged_at + gain);
-    let e = limits.reaction_time();
-    let robot = any_in(0, 5_000);
-    let obstacle = any_in(0, 5_000);
-    kani::assume(1000 * robot <= (judged_at + gain) * e);
-    kani::assume(1000 * obstacle <= limits.obstacle_speed() * e);
-    let left = clearance - robot - obstacle;
-    let safe = |speed, clearance| {
-        promise::safe_state(speed, clearance, limits.braking(), limits.obstacle_speed())
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+pub fn plan_covers_command() {
+    let guard = Guard::new(&checked(preset::PIONEER_3DX));
+    let limits = *guard.limits();
+    let speed = any_in(1, limits.speed_max());
+    match guard.plan(speed, 0, &Motion::REST) {
+        Some(plan) => plan_covers(&limits, &plan, speed + limits.speed_gain()),
+        None => assert!(false, "there is a plan for every speed that may be told"),
+    }
+    kani::cover!(speed == 400, "full speed");
+}
+
+/// The same for a robot that may be faster, whatever it is told; one that is faster than it may
+/// ever be told has no plan, and so is not moved.
+//= shield.INV-11
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+pub fn plan_covers_motion() {
+    let guard = Guard::new(&checked(preset::PIONEER_3DX));
+    let limits = *guard.limits();
+    let motion = Motion {
+        speed: any_in(1, 12_000),
+        ..Motion::REST
     };
-    assert!(promise::stays_safe(true, safe(after, left)));
-    kani::cover!(after > judged_at, "the robot ends faster than judged");
-    kani::cover!(left < 600, "near the end of the room");
+    match guard.plan(0, 0, &motion) {
+        Some(plan) => plan_covers(&limits, &plan, motion.speed),
+        None => assert!(motion.speed > limits.speed_max() + limits.speed_gain()),
+    }
+    kani::cover!(motion.speed == 466, "as fast as it may be");
+    kani::cover!(motion.speed == 467, "faster");
 }
 
-/// Braking keeps a safe state safe (Pioneer preset): speed after t is v − b·t, the robot travels
-/// (v² − v'²)/2b and the obstacle V·t meanwhile.
-//= shield.INV-3
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-pub fn braking_stays_safe() {
-    let limits = pioneer();
-    let (b, o) = (limits.braking(), limits.obstacle_speed());
-    let clearance = any_in(0, 6_000);
-    let speed = any_in(0, limits.speed_max() + limits.speed_gain());
-    kani::assume(promise::safe_state(speed, clearance, b, o));
-    let after = any_in(0, speed);
-    let robot = any_in(0, 3_000);
-    let obstacle = any_in(0, 3_000);
-    kani::assume(2 * b * robot <= speed * speed - after * after);
-    kani::assume(b * obstacle <= o * (speed - after));
-    let left = clearance - robot - obstacle;
+fn plan_covers(limits: &Limits, plan: &Plan, fastest: i32) {
+    assert!(promise::covers_rest(
+        plan.way[0],
+        plan.time,
+        fastest,
+        limits.braking(),
+        limits.reaction_time(),
+    ));
+}
+
+/// Passive safety is inductive: after any admitted plan, whatever robot and thing then do within
+/// the model until the next command takes effect, braking ends before contact. The shield may see
+/// less than the true clearance, never more. Straight at the thing, which is the worst; for other
+/// cosines see `spec/smt`.
+fn admitted_motion_stays_safe(parameters: Parameters, class: Class) {
+    let limits = Limits::new(&checked(parameters));
+    let fastest = any_in(0, limits.speed_max() + limits.speed_gain());
+    let speed_of_thing = limits.class_speed(class);
+    let clearance = any_in(0, 8_000);
+    // What `Limits::fits` asks of a thing straight ahead that is seen now: see `fits_is_the_guard`.
+    let way_to_rest = limits.way_to_rest(fastest);
+    let time_to_rest = limits.time_to_rest(fastest);
+    kani::assume(1000 * way_to_rest + speed_of_thing * time_to_rest <= 1000 * clearance);
+    // Until the next command takes effect: no faster than that, and no longer than ε.
+    let time = limits.reaction_time();
+    let way = any_in(0, 5_000);
+    kani::assume(1000 * way <= fastest * time);
+    let after = any_in(0, fastest);
+    let left = 1000 * (clearance - way) - speed_of_thing * time;
     assert!(promise::stays_safe(
         true,
-        promise::safe_state(after, left, b, o)
+        promise::safe_state(
+            after,
+            1000,
+            i64::from(left),
+            limits.braking(),
+            speed_of_thing
+        )
+    ));
+    kani::cover!(after == fastest && after > 300, "still at full speed");
+    kani::cover!(left < 300_000, "near the end of the room");
+}
+
+/// What fits is what the guard says: term by term, each with the other factors fixed, for a thing
+/// straight ahead. Together they are the assumption of `admitted_motion_stays_safe`.
+fn fits_is_the_guard(vary: impl Fn(&mut Hazard, &mut Plan)) {
+    let limits = pioneer();
+    let mut hazard = Hazard {
+        range: 2_000,
+        clearance: 1_000,
+        age: 0,
+        way: [0; 2],
+        turned: 0,
+        class: Class::Unknown,
+        too_fast: false,
+        stuck: false,
+    };
+    let ahead = Closing {
+        ahead: 1000,
+        back: -1000,
+        face: [-1000, 1000],
+    };
+    let mut plan = Plan {
+        way: [100, 0],
+        time: 500,
+        turn: 0,
+        turn_rate: 0,
+    };
+    vary(&mut hazard, &mut plan);
+    let speed = limits.class_speed(hazard.class);
+    let fits = limits.fits(&hazard, &ahead, &plan);
+    let way = hazard.way[0] + plan.way[0];
+    let needed = 1000 * way + speed * (hazard.age + plan.time);
+    assert_eq!(fits, needed <= 1000 * hazard.clearance);
+    kani::cover!(fits, "fits");
+    kani::cover!(!fits, "does not fit");
+}
+
+/// The clearance.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn fits_by_clearance() {
+    fits_is_the_guard(|hazard, _| hazard.clearance = any_in(-10_000, 20_000));
+}
+
+/// The age and the class.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn fits_by_age() {
+    fits_is_the_guard(|hazard, _| {
+        hazard.age = any_in(0, 10_000);
+        hazard.class = any_class();
+    });
+}
+
+/// The ways.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn fits_by_way() {
+    fits_is_the_guard(|hazard, plan| {
+        hazard.way[0] = any_in(0, 10_000);
+        plan.way[0] = any_in(0, 10_000);
+    });
+}
+
+/// The induction step for the Pioneer preset.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn admitted_motion_stays_safe_pioneer() {
+    admitted_motion_stays_safe(preset::PIONEER_3DX, Class::Unknown);
+}
+
+/// The induction step for the Pioneer preset and what stands still.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn admitted_motion_stays_safe_still() {
+    admitted_motion_stays_safe(preset::PIONEER_3DX, Class::Still);
+}
+
+/// The induction step for the preset of S1.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn admitted_motion_stays_safe_2012() {
+    admitted_motion_stays_safe(preset::SRIKANDI_II_2012, Class::Unknown);
+}
+
+/// The induction step for the preset of S2.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn admitted_motion_stays_safe_2011() {
+    admitted_motion_stays_safe(preset::SRIKANDI_II_2011, Class::Unknown);
+}
+
+/// Braking keeps a safe state safe: while the speed falls from v to v' the robot travels
+/// (v² − v'²)/2b at most, and the thing V·(v − v')/b. All presets brake at 1 m/s². Ways in mm, what
+/// is left in whole mm.
+fn braking_stays_safe(class: Class) {
+    let limits = pioneer();
+    let (b, o) = (limits.braking(), limits.class_speed(class));
+    let clearance = any_in(0, 6_000);
+    let speed = any_in(0, 500);
+    kani::assume(promise::safe_state(
+        speed,
+        1000,
+        1000 * i64::from(clearance),
+        b,
+        o,
+    ));
+    let after = any_in(0, speed);
+    let robot = any_in(0, 127);
+    let thing = any_in(0, 511);
+    kani::assume(2 * b * robot <= speed * speed - after * after);
+    kani::assume(b * thing <= o * (speed - after));
+    let left = clearance - robot - thing;
+    assert!(promise::stays_safe(
+        true,
+        promise::safe_state(after, 1000, 1000 * i64::from(left), b, o)
     ));
     kani::cover!(after == 0 && speed > 300, "to rest");
     kani::cover!(left == 0, "just in time");
 }
 
-/// Any clearance may be asked for, up to what `guard_does_not_overflow` shows.
-pub fn any_clearance(_limits: &Limits, _speed: i32) -> i32 {
-    any_in(0, MOST)
+/// Braking before a person.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn braking_stays_safe_unknown() {
+    braking_stays_safe(Class::Unknown);
+}
+
+/// Braking before what stands still.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn braking_stays_safe_still() {
+    braking_stays_safe(Class::Still);
+}
+
+/// Standing still is always possible, and needs nothing: rest is admitted in any state.
+//= shield.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn rest_is_always_safe() {
+    let left = i64::from(any_in(0, i32::MAX));
+    assert!(promise::safe_state(
+        0,
+        any_in(0, 1000),
+        left,
+        any_in(1, 10_000),
+        any_in(0, 3_000)
+    ));
+    assert!(promise::admitted(
+        Twist::REST.speed,
+        Twist::REST.turn_rate,
+        false
+    ));
+    kani::cover!(left == 0, "in contact");
+}
+
+/// Whether there is room may be answered in any way.
+pub fn any_fit(_limits: &Limits, _hazard: &Hazard, _closing: &Closing, _plan: &Plan) -> bool {
+    kani::any()
 }
 
 /// Contact may be judged in any way.
@@ -146,59 +415,137 @@ pub fn any_contact(_limits: &Limits, _distance: i32, _closing: i32) -> bool {
     kani::any()
 }
 
-/// What the shield lets through, for any advice, any room and any formula of the guard: limits,
-/// slew, and no motion without the clearance that was asked for.
+/// What is admitted, for any advice, any command before, any motion and any answer about the room:
+/// limits, slew, no path tighter than advised, nothing backward unseen.
 //= shield.INV-1
 //= shield.INV-6
-//= shield.INV-9
-//= shield.INV-11
+//= shield.INV-13
+//= shield.INV-15
 #[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-#[cfg_attr(
-    kani,
-    kani::stub(crate::shield::Limits::required_clearance, any_clearance)
-)]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
 #[cfg_attr(
     kani,
     kani::stub(crate::shield::Limits::contact_within_stop_time, any_contact)
 )]
-pub fn speed_is_admitted() {
-    let limits = pioneer();
-    let last = any_in(0, limits.speed_max());
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::greatest, any_found))]
+pub fn advice_is_scaled_down() {
+    let config = super::view::blind_pioneer();
+    let guard = Guard::new(&config);
+    let limits = *guard.limits();
+    let ring = super::view::one_sonar(&config);
+    let last = twist(
+        any_in(-limits.reverse_speed_max(), limits.speed_max()),
+        any_in(-limits.turn_rate_max(), limits.turn_rate_max()),
+    );
     let elapsed = any_in(0, limits.reaction_time());
-    let room = Room {
-        clearance: kani::any(),
-        sonar: 0,
-        ahead: if kani::any() {
-            Some((any_in(0, 1_000_000), any_in(0, 3_000)))
-        } else {
-            None
-        },
+    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    let hazard = [any_hazard()];
+    let surroundings = Surroundings {
+        hazard: &hazard,
+        ring: &ring,
+        motion: any_motion(),
+        ahead: None,
     };
-    let speed_bound = any_in(0, 10_000);
-    let admission = limits.admissible_speed(last, kani::any(), elapsed, speed_bound, room);
-    let speed = admission.speed;
-    assert!(promise::within_limits(speed, 0, limits.speed_max(), 0));
+    let admission = guard.admissible(advised, last, [elapsed; 2], &surroundings);
+    let (speed, turn_rate) = (admission.twist.speed, admission.twist.turn_rate);
+    assert!(promise::within_limits(
+        speed,
+        turn_rate,
+        limits.speed_max(),
+        limits.reverse_speed_max(),
+        limits.turn_rate_max()
+    ));
     assert!(promise::slew_kept(
-        last,
+        last.speed,
         speed,
         limits.acceleration(),
         elapsed
     ));
-    assert!(promise::admitted(speed, admission.required, room.clearance));
-    assert!(promise::judged_at_what_it_may_be(
-        speed,
-        admission.judged_at,
-        speed_bound,
-        limits.speed_gain()
+    assert!(promise::slew_kept(
+        last.turn_rate,
+        turn_rate,
+        limits.turn_acceleration(),
+        elapsed
     ));
+    assert!(promise::no_tighter(
+        speed,
+        turn_rate,
+        advised.speed,
+        advised.turn_rate
+    ));
+    assert!(promise::sees_where_it_goes(speed, ring.looks_back()));
     kani::cover!(speed > 300, "fast");
-    kani::cover!(speed > 0 && speed < 100 && elapsed > 200, "slowed");
-    kani::cover!(speed == 0 && last > 200, "braked");
+    kani::cover!(speed < 0, "backward");
+    kani::cover!(speed > 0 && turn_rate < 0, "a curve");
+    kani::cover!(speed == 0 && turn_rate > 0, "on the spot");
 }
 
-/// The search for the greatest admitted speed finds it, for every wish and every threshold.
+/// A search may find anything up to its wish: nothing rests on it.
+pub fn any_found(_steps: u32, wish: i32, _admitted: impl Fn(i32) -> bool) -> i32 {
+    let found = kani::any();
+    kani::assume(found >= 0 && (found <= wish || found == 0));
+    found
+}
+
+/// A plan may be anything, or nothing.
+pub fn any_plan(_guard: &Guard, _speed: i32, turn_rate: i32, _motion: &Motion) -> Option<Plan> {
+    kani::any::<bool>().then(|| Plan {
+        way: [any_in(0, MOST), any_in(0, MOST)],
+        time: any_in(0, MOST),
+        turn: any_in(0, 10_000),
+        turn_rate: turn_rate.saturating_abs(),
+    })
+}
+
+/// What is admitted was admitted for just that command: the guard is asked once more about what
+/// is returned, however the search went.
+//= shield.INV-9
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Surroundings::admit, odd_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::greatest, any_found))]
+pub fn what_moves_was_admitted() {
+    let config = super::view::blind_pioneer();
+    let guard = Guard::new(&config);
+    let ring = super::view::one_sonar(&config);
+    let hazard = [any_hazard()];
+    let surroundings = Surroundings {
+        hazard: &hazard,
+        ring: &ring,
+        motion: Motion::REST,
+        ahead: None,
+    };
+    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    let last = twist(any_in(-100, 400), 0);
+    let admitted = guard
+        .admissible(advised, last, [100; 2], &surroundings)
+        .twist;
+    #[cfg(kani)]
+    let fits = odd_fits(&surroundings, &guard, admitted);
+    #[cfg(not(kani))]
+    let fits = surroundings.admit(&guard, admitted);
+    assert!(promise::admitted(admitted.speed, admitted.turn_rate, fits));
+    kani::cover!(admitted.speed > 0, "it drives");
+    kani::cover!(admitted.speed == 0 && advised.speed > 300, "it does not");
+}
+
+/// A stand-in for the room in which no search finds its way: odd speeds fit, if the range says so.
+pub fn odd_fits<'a: 'a, const N: usize>(
+    surroundings: &Surroundings<'a, N>,
+    _guard: &Guard,
+    twist: Twist,
+) -> bool {
+    twist.speed % 2 == 1 && twist.speed < surroundings.hazard[0].range
+}
+
+/// The search finds the greatest there is, for every wish and every threshold.
 //= shield.INV-10
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
@@ -206,10 +553,123 @@ pub fn speed_is_admitted() {
 pub fn search_finds_the_greatest() {
     let wish = any_in(0, 4095);
     let threshold = any_in(0, 4095);
-    let found = greatest(wish, |speed| speed <= threshold);
+    let found = greatest(12, wish, |number| number <= threshold);
     assert!(promise::greatest(found, wish, threshold));
     kani::cover!(found == threshold && found < wish, "limited");
     kani::cover!(found == wish && found > 2048, "as wished");
+}
+
+/// A worse hazard leaves room for nothing more: nearer, older or of a faster class. Pioneer preset,
+/// any plan that does not lead towards it; for ways and turns see the next two.
+//= shield.INV-14
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn worse_is_no_easier() {
+    let hazard = Hazard {
+        way: [0; 2],
+        turned: 0,
+        ..any_hazard()
+    };
+    let worse = Hazard {
+        clearance: any_in(-10_000, hazard.clearance),
+        age: any_in(hazard.age, 10_000),
+        class: if kani::any() {
+            hazard.class
+        } else {
+            Class::Unknown
+        },
+        ..hazard
+    };
+    is_no_easier(&hazard, &worse, -1000, [0; 2]);
+}
+
+/// After a longer way, forward or backward, straight at the thing.
+//= shield.INV-14
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn farther_is_no_easier() {
+    let hazard = Hazard {
+        turned: 0,
+        class: Class::Unknown,
+        ..any_hazard()
+    };
+    let way = hazard.way.map(|way| any_in(way, 10_000));
+    is_no_easier(&hazard, &Hazard { way, ..hazard }, 1000, [300; 2]);
+}
+
+/// After a wider turn, from any direction, for a way of 300 mm.
+//= shield.INV-14
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn turned_is_no_easier() {
+    let hazard = Hazard {
+        way: [0; 2],
+        class: Class::Still,
+        ..any_hazard()
+    };
+    let turned = any_in(hazard.turned, 10_000);
+    let worse = Hazard { turned, ..hazard };
+    is_no_easier(&hazard, &worse, any_in(-1000, 1000), [300, 0]);
+}
+
+fn is_no_easier(hazard: &Hazard, worse: &Hazard, cosine: i32, way: [i32; 2]) {
+    let limits = pioneer();
+    let closing = Closing {
+        ahead: cosine,
+        back: cosine,
+        face: [-1000, 1000],
+    };
+    let plan = Plan {
+        way,
+        time: 500,
+        turn: 0,
+        turn_rate: 0,
+    };
+    let fits = limits.fits(hazard, &closing, &plan);
+    let fits_worse = limits.fits(worse, &closing, &plan);
+    assert!(promise::worse_is_no_easier(fits, fits_worse));
+    kani::cover!(fits && !fits_worse, "worse");
+}
+
+/// SH.6: a turn that fits ends before contact. Pioneer preset, any turn rate, people.
+//= shield.INV-12
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn turn_ends_before_contact() {
+    let limits = pioneer();
+    let hazard = Hazard {
+        way: [0; 2],
+        turned: 0,
+        class: Class::Unknown,
+        ..any_hazard()
+    };
+    let closing = Closing {
+        ahead: -1000,
+        back: -1000,
+        face: [-1000, 1000],
+    };
+    let plan = Plan {
+        way: [0; 2],
+        time: limits.reaction_time(),
+        turn: 0,
+        turn_rate: any_in(0, 20_000),
+    };
+    let o = limits.class_speed(Class::Unknown);
+    let left = 1000 * hazard.clearance - o * hazard.age;
+    if limits.fits(&hazard, &closing, &plan) {
+        assert!(promise::turn_ends_before_contact(
+            plan.turn_rate,
+            limits.turn_acceleration(),
+            limits.reaction_time(),
+            o,
+            i64::from(left),
+        ));
+        kani::cover!(plan.turn_rate > 1_500, "a fast turn");
+    }
 }
 
 /// Any bit pattern as advice.
@@ -220,51 +680,73 @@ fn any_advice() -> Advice {
     }
 }
 
-/// A shield that is ready to go, with any view and any advice: limits are kept, a stop has no
-/// speed, and a view that cannot be trusted (a sonar stale, missing, not a number or
-/// in contact, motors off, a stall, the emergency stop) yields no motion at all. That raw
-/// observations become such views is `view::only_ranges_are_readings`.
+/// Something may be admitted for any advice: within the limits, as `advice_is_scaled_down` shows.
+pub fn any_admission<const N: usize>(
+    guard: &Guard,
+    advised: Twist,
+    _last: Twist,
+    _elapsed: [i32; 2],
+    _surroundings: &Surroundings<'_, N>,
+) -> Admission {
+    let limits = guard.limits();
+    let speed = any_in(-limits.reverse_speed_max(), limits.speed_max());
+    let turn_rate = any_in(-limits.turn_rate_max(), limits.turn_rate_max());
+    kani::assume(promise::no_tighter(
+        speed,
+        turn_rate,
+        advised.speed,
+        advised.turn_rate,
+    ));
+    kani::assume((advised.speed < 0) == (speed < 0) || speed == 0);
+    Admission {
+        twist: twist(speed, turn_rate),
+        limit: None,
+    }
+}
+
+/// A shield that is ready to go, with any view and any advice: limits are kept, a stop is kept,
+/// and a view that cannot be trusted (a sonar stale, missing, not a number or in contact, motors
+/// off, a stall, the emergency stop) yields no motion at all. That raw observations become such
+/// views is `view::only_ranges_are_readings`.
 //= shield.INV-1
 //= shield.INV-4
 //= shield.INV-5
 #[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::solver(minisat))]
-#[cfg_attr(kani, kani::unwind(40))]
-#[cfg_attr(
-    kani,
-    kani::stub(crate::shield::Limits::required_clearance, any_clearance)
-)]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
 #[cfg_attr(
     kani,
     kani::stub(crate::shield::Limits::contact_within_stop_time, any_contact)
 )]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, any_admission))]
 pub fn any_law_is_shielded() {
-    let parameters = Parameters {
-        resume_samples: 1.0,
-        ..preset::PIONEER_3DX
-    };
-    let Ok(config) = Config::new(parameters) else {
-        unreachable!()
-    };
+    let config = super::view::blind_pioneer();
     let ring = super::view::one_sonar(&config);
     let mut shield = Shield::new(&config);
     let clear = super::view::clear_view();
     // The stand-ins may ask for any clearance: go on where they let the robot go.
     kani::assume(shield.assess(&clear, &ring).is_none());
-    shield.admit(Advice::REST, &clear);
+    shield.admit(Advice::REST, &clear, &ring);
     let view = super::view::any_view();
     let stop = shield.assess(&view, &ring);
-    let verdict = shield.admit(any_advice(), &view);
+    let verdict = shield.admit(any_advice(), &view, &ring);
     let command = verdict.command;
     assert!(promise::within_limits(
         command.speed(),
         command.turn_rate(),
         shield.limits().speed_max(),
+        shield.limits().reverse_speed_max(),
         shield.limits().turn_rate_max()
     ));
-    assert!(promise::stop_has_no_speed(
+    assert!(promise::stop_is_kept(
         verdict.stop.is_some(),
-        command.speed()
+        verdict.stop.is_some_and(|stop| stop.may_turn()),
+        shield.is_latched(),
+        command.speed(),
+        command.turn_rate(),
     ));
     let trusted = matches!(
         view.sonar[0],
@@ -283,43 +765,6 @@ pub fn any_law_is_shielded() {
     kani::cover!(command.turn_rate() < 0, "it turns");
     kani::cover!(stop.is_none() && verdict.stop.is_some(), "bad advice");
     kani::cover!(!trusted, "a bad view");
-}
-
-/// Turn rates keep their limit, gain no more than the base can, and end before contact, for any
-/// advice, any clearance and any turn before; Pioneer preset.
-//= shield.INV-1
-//= shield.INV-6
-//= shield.INV-12
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-pub fn turn_rate_is_limited() {
-    let limits = pioneer();
-    let last = any_in(-limits.turn_rate_max(), limits.turn_rate_max());
-    let elapsed = any_in(0, limits.reaction_time());
-    let clearance = kani::any();
-    let turn_rate = limits.admissible_turn_rate(last, kani::any(), elapsed, clearance);
-    assert!(promise::within_limits(
-        0,
-        turn_rate,
-        0,
-        limits.turn_rate_max()
-    ));
-    assert!(promise::turn_slew_kept(
-        last,
-        turn_rate,
-        limits.turn_acceleration(),
-        elapsed
-    ));
-    assert!(promise::turn_ends_before_contact(
-        turn_rate,
-        limits.turn_acceleration(),
-        limits.reaction_time(),
-        limits.obstacle_speed(),
-        clearance
-    ));
-    kani::cover!(turn_rate < last, "clockwise");
-    kani::cover!(turn_rate == limits.turn_rate_max(), "as fast as it may");
 }
 
 /// SH.4: if contact is possible at any time within the stop time, the guard stops. In integers:

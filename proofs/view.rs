@@ -5,7 +5,7 @@ use super::avoid::{any_angle, any_length, any_speed, any_trend};
 use super::kani;
 use nalgebra::Vector2;
 use sidestep::avoid::ObstacleSpeed;
-use sidestep::config::Config;
+use sidestep::config::{Config, Parameters};
 use sidestep::observation::{
     BaseStatus, Observation, OdometrySample, SonarReading, SonarSample, classify,
 };
@@ -13,12 +13,24 @@ use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length};
 use sidestep::ring::{Placement, Ring};
 use sidestep::track::Obstacle;
-use sidestep::view::{EchoMemory, GoalView, Memory, Pose, View};
+use sidestep::view::{Class, EchoMemory, GoalView, Hazard, Look, Memory, Odometer, Pose, View};
 use sidestep_spec::view as promise;
 
 /// The Pioneer preset.
 pub fn pioneer() -> Config {
     match Config::new(preset::PIONEER_3DX) {
+        Ok(config) => config,
+        Err(_) => unreachable!(),
+    }
+}
+
+/// The Pioneer preset for a robot that need not see all round: with one sonar it could not move.
+pub fn blind_pioneer() -> Config {
+    match Config::new(Parameters {
+        blind_angle_max: 3.15,
+        resume_samples: 1.0,
+        ..preset::PIONEER_3DX
+    }) {
         Ok(config) => config,
         Err(_) => unreachable!(),
     }
@@ -131,16 +143,26 @@ pub fn clear_view() -> View<1> {
             heading: Angle::ZERO,
         },
         speed: 0.0,
+        turn_rate: 0.0,
         odometry_age: 0,
         goal: GoalView {
             heading: Angle::ZERO,
             distance: 5.0,
         },
         sonar: [SonarReading::NoEcho(Length::MAX)],
-        range: [4_000],
-        clearance: [4_000],
+        hazard: [Hazard {
+            range: 4_000,
+            clearance: 4_000,
+            age: 0,
+            way: [0; 2],
+            turned: 0,
+            class: Class::Unknown,
+            too_fast: false,
+            stuck: false,
+        }],
         obstacle: None,
         room: [Length::MAX; 2],
+        beside: [Length::MAX; 2],
         base: BaseStatus {
             motors_enabled: true,
             stalled: false,
@@ -160,14 +182,14 @@ pub fn any_view() -> View<1> {
             heading: any_angle(),
         },
         speed: any_between(-10.0, 10.0),
+        turn_rate: any_between(-20.0, 20.0),
         odometry_age: kani::any(),
         goal: GoalView {
             heading: any_angle(),
             distance: any_between(0.0, 2e4),
         },
         sonar: [any_reading()],
-        range: [super::shield::any_in(0, 1_000_000)],
-        clearance: [super::shield::any_in(-1_000_000, 1_000_000)],
+        hazard: [super::shield::any_hazard()],
         obstacle: if kani::any() {
             Some(Obstacle {
                 distance: any_length(),
@@ -186,6 +208,7 @@ pub fn any_view() -> View<1> {
             None
         },
         room: [any_length(), any_length()],
+        beside: [any_length(), any_length()],
         base: BaseStatus {
             motors_enabled: kani::any(),
             stalled: kani::any(),
@@ -195,47 +218,122 @@ pub fn any_view() -> View<1> {
     }
 }
 
+/// A look of a robot that stands or has moved, a time after the start.
+fn look(measured: Option<i32>, at: u64, odometer: Odometer, covered: bool) -> Look {
+    Look {
+        measured,
+        taken_at: Instant(at),
+        now: Instant(at),
+        odometer,
+        pose: None,
+        covered,
+    }
+}
+
+fn any_range() -> Option<i32> {
+    kani::any::<bool>().then(|| super::shield::any_in(0, 10_000))
+}
+
 /// An echo that is nearer counts at once; one reading that is farther, or is no echo, frees no
-/// more than motion and scatter explain. Any two ranges or none, up to half a second apart,
-/// Pioneer preset.
+/// more than motion and scatter explain; nothing that happens meanwhile is forgotten; not to hear
+/// a thing makes it no less of a hazard. Any two ranges or none, up to half a second apart, any way
+/// and turn in between, Pioneer preset.
 //= view.INV-2
 //= view.INV-3
 //= view.INV-5
+//= view.INV-7
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 pub fn echoes_are_held() {
-    let config = pioneer();
+    let config = blind_pioneer();
+    let ring = one_sonar(&config);
+    let sonar = &ring.sonars()[0];
     let mut memory = EchoMemory::default();
-    let any_range = || {
-        if kani::any() {
-            Some(super::shield::any_in(0, 10_000))
-        } else {
-            None
-        }
-    };
     let (first, second) = (any_range(), any_range());
-    let later = 1000 + kani::any::<u64>() % 500;
-    let before = memory.update(first, Instant(1000), Instant(1000), &config);
-    let after = memory.update(second, Instant(later), Instant(later), &config);
+    let gap = super::shield::any_in(0, 500);
+    let way = super::shield::any_in(0, 300);
+    let turned = super::shield::any_in(0, 1_000);
+    let start = Odometer::default();
+    let odometer = Odometer {
+        way: [i64::from(way), 0],
+        turned: i64::from(turned),
+    };
+    let before = memory.update(&look(first, 1000, start, true), sonar, &config);
+    let later = 1000 + gap as u64;
+    let after = memory.update(&look(second, later, odometer, kani::any()), sonar, &config);
     if let Some(range) = second {
         assert!(promise::nearer_counts(after.range, range));
     }
     if first.is_some() {
-        // 1.2 m/s for half a second, and scatter.
+        // 0.8 m/s for half a second, the robot's own way, and scatter.
         assert!(promise::not_freed_at_once(
             before.range,
             after.range,
-            600 + 100
+            400 + way + 100
         ));
+        if second.is_none() {
+            assert!(promise::nothing_forgotten(
+                [after.age, after.way[0], after.way[1], after.turned].map(i64::from),
+                [gap, way, 0, turned].map(i64::from)
+            ));
+            assert!(promise::losing_sight_frees_nothing(
+                [before.clearance, after.clearance],
+                [before.age, after.age],
+                [
+                    before.class == Class::Unknown,
+                    after.class == Class::Unknown
+                ]
+            ));
+        }
     }
-    assert!(promise::reachable_is_nearer(after.range, after.reachable));
     kani::cover!(after.range < before.range, "nearer");
     kani::cover!(after.range > before.range, "a little farther");
     kani::cover!(
         second.is_none() && after.range < 1000,
         "held without an echo"
     );
+}
+
+/// Nothing is still before it has agreed with the robot's own motion often enough: three readings,
+/// of any ranges, at any times, where two would have to agree with the first.
+//= view.INV-6
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+pub fn still_is_earned() {
+    let config = match Config::new(Parameters {
+        blind_angle_max: 3.15,
+        still_samples: 2.0,
+        ..preset::PIONEER_3DX
+    }) {
+        Ok(config) => config,
+        Err(_) => unreachable!(),
+    };
+    let ring = one_sonar(&config);
+    let sonar = &ring.sonars()[0];
+    let mut memory = EchoMemory::default();
+    let odometer = Odometer::default();
+    let (mut readings, mut at, mut latest) = (0, 1000, 1000);
+    for _ in 0..3 {
+        let measured = any_range();
+        at += super::shield::any_in(0, 600) as u64;
+        let hazard = memory.update(&look(measured, at, odometer, true), sonar, &config);
+        if measured.is_some() {
+            readings += 1;
+            latest = at;
+        }
+        assert!(promise::still_is_earned(
+            hazard.class == Class::Still,
+            readings,
+            2,
+            at - latest,
+            500
+        ));
+        kani::cover!(hazard.class == Class::Still, "still");
+    }
 }
 
 /// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits.
@@ -248,7 +346,7 @@ pub fn echoes_are_held() {
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
 pub fn any_observation_is_judged() {
-    let config = pioneer();
+    let config = blind_pioneer();
     let ring = one_sonar(&config);
     let goal = Vector2::new(5.0, 0.0);
     let mut memory = Memory::default();
@@ -260,7 +358,7 @@ pub fn any_observation_is_judged() {
             view.obstacle.map(|obstacle| obstacle.distance.get())
         ));
         kani::cover!(view.obstacle.is_some(), "an obstacle");
-        kani::cover!(view.range[0] < 1000, "something near");
+        kani::cover!(view.hazard[0].range < 1000, "something near");
     }
     kani::cover!(view.is_err(), "no odometry");
 }

@@ -109,7 +109,7 @@ pub enum StopReason {
     OdometryInvalid,
     /// The clock went back.
     ClockWentBack,
-    /// The law advised something that is not a number.
+    /// The law advised something that is not a number, or beyond 10 m/s or 20 rad/s.
     AdviceInvalid,
     /// The motors have no power.
     MotorsDisabled,
@@ -344,7 +344,7 @@ impl StopReason {
                 Action::Stop,
                 false,
                 false,
-                "finite advice",
+                "sensible advice",
                 BROKEN,
             ),
             Self::MinDistance { .. } => (
@@ -479,7 +479,10 @@ impl fmt::Display for StopReason {
             Self::OdometryStale => write!(f, "odometry is stale"),
             Self::OdometryInvalid => write!(f, "odometry is not a pose"),
             Self::ClockWentBack => write!(f, "clock went back"),
-            Self::AdviceInvalid => write!(f, "the law's advice is not a number"),
+            Self::AdviceInvalid => write!(
+                f,
+                "the law's advice is no number, or beyond 10 m/s or 20 rad/s"
+            ),
             Self::MotorsDisabled => write!(f, "motors are disabled"),
             Self::Stalled => write!(f, "stall or bumper"),
             Self::EmergencyStop => write!(f, "emergency stop"),

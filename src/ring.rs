@@ -45,6 +45,8 @@ pub struct Sonar {
     pub contact_range: i32,
     /// The axis points within 60° of straight ahead.
     pub forward: bool,
+    /// Distance of the face from the centre of rotation, mm, rounded up.
+    pub lever: i32,
     /// How directly the robot may close on what this sonar sees.
     pub closing: Closing,
 }
@@ -82,6 +84,7 @@ impl<const N: usize> Ring<N> {
             heading: Angle::ZERO,
             contact_range: 0,
             forward: false,
+            lever: 0,
             closing: Closing {
                 ahead: 1000,
                 back: 1000,
@@ -161,6 +164,7 @@ impl Sonar {
             heading,
             contact_range,
             forward: heading.get().abs() <= FRAC_PI_3,
+            lever: millimetres_up(offset),
             closing,
         })
     }

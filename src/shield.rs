@@ -16,30 +16,41 @@ use crate::ring::{Closing, Ring};
 use crate::view::{Class, Hazard, View};
 use core::fmt;
 
-/// What the robot is told to do. Only the shield makes one that moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Command {
-    speed: i32,
-    turn_rate: i32,
+/// Speed and turn rate in whole numbers: what is wished for, asked about, or was told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Twist {
+    /// mm/s, forward positive.
+    pub speed: i32,
+    /// Milliradians/s, counter-clockwise positive.
+    pub turn_rate: i32,
 }
 
-impl Command {
-    /// Stand still. Braking is always allowed.
+impl Twist {
+    /// No motion.
     pub const REST: Self = Self {
         speed: 0,
         turn_rate: 0,
     };
+}
+
+/// What the robot is told to do. Only the shield makes one that moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Command(Twist);
+
+impl Command {
+    /// Stand still. Braking is always allowed.
+    pub const REST: Self = Self(Twist::REST);
 
     /// Speed in mm/s, forward positive.
     #[must_use]
     pub const fn speed(self) -> i32 {
-        self.speed
+        self.0.speed
     }
 
     /// Turn rate in milliradians/s, counter-clockwise positive.
     #[must_use]
     pub const fn turn_rate(self) -> i32 {
-        self.turn_rate
+        self.0.turn_rate
     }
 }
 
@@ -335,19 +346,20 @@ impl Guard {
 
     /// SH.5: of the commands that scale the advice down (mm/s, mrad/s) the fastest that the base
     /// reaches from `last` and for which there is room; rest if there is none. The curvature is
-    /// that of the advice or less. The base has `elapsed` ms (0 to ε) to gain speed and turn rate.
+    /// that of the advice or less. The advice is at most 10 m/s and 20 rad/s either way; the base
+    /// has `elapsed` ms (0 to ε each) to gain speed and turn rate.
     #[must_use]
     pub fn admissible<const N: usize>(
         &self,
-        advised: Command,
-        last: Command,
+        advised: Twist,
+        last: Twist,
         elapsed: [i32; 2],
         surroundings: &Surroundings<'_, N>,
     ) -> Admission {
         let limits = &self.limits;
         let [gaining, elapsed] = elapsed;
         let backward = advised.speed < 0;
-        let wanted = advised.speed.saturating_abs();
+        let wanted = advised.speed.abs();
         let most = if !backward {
             limits.speed_max
         } else if surroundings.ring.looks_back() {
@@ -371,44 +383,41 @@ impl Guard {
                 last.turn_rate.max(0).saturating_add(step),
             )
             .clamp(-limits.turn_rate_max, limits.turn_rate_max);
-        let turn_rate = greatest(13, wish.saturating_abs(), |rate| {
-            no_tighter(speed, rate, advised)
-        });
+        let turn_rate = greatest(12, wish.abs(), |rate| no_tighter(speed, rate, advised));
 
         // That, and smaller ones by 64ths: speeds rounded up, turn rates down.
-        let command = |k: i32| {
+        let scaled = |k: i32| {
             let speed = (speed * k + (SHARES - 1)) / SHARES;
             let turn_rate = turn_rate * k / SHARES;
-            Command {
+            Twist {
                 speed: if backward { -speed } else { speed },
                 turn_rate: if wish < 0 { -turn_rate } else { turn_rate },
             }
         };
-        let share = greatest(7, SHARES, |k| surroundings.admit(self, command(k)));
-        let mut admitted = command(share);
+        let share = greatest(7, SHARES, |k| surroundings.admit(self, scaled(k)));
+        let mut admitted = scaled(share);
         // Asked once more, so that what is returned does not rest on the search.
         let fits = surroundings.admit(self, admitted)
-            && no_tighter(admitted.speed.saturating_abs(), admitted.turn_rate, advised);
+            && no_tighter(admitted.speed, admitted.turn_rate, advised);
         if !fits {
-            admitted = Command::REST;
+            admitted = Twist::REST;
         }
         let limit = if share < SHARES && (speed > 0 || turn_rate > 0) {
-            Some(surroundings.obstruction(self, command(share + 1)))
+            Some(surroundings.obstruction(self, scaled(share + 1)))
         } else {
             (speed < wanted).then_some(Limit::Base)
         };
         Admission {
-            command: admitted,
+            twist: admitted,
             limit,
         }
     }
 }
 
 /// Turning at `turn_rate` while driving at `speed` bends the path no tighter than advised:
-/// |ω|/v ≤ |ω*|/|v*|, multiplied out.
-fn no_tighter(speed: i32, turn_rate: i32, advised: Command) -> bool {
-    i64::from(turn_rate.saturating_abs()) * i64::from(advised.speed.saturating_abs())
-        <= i64::from(advised.turn_rate.saturating_abs()) * i64::from(speed)
+/// |ω|/|v| ≤ |ω*|/|v*|, multiplied out.
+fn no_tighter(speed: i32, turn_rate: i32, advised: Twist) -> bool {
+    turn_rate.abs() * advised.speed.abs() <= advised.turn_rate.abs() * speed.abs()
 }
 
 /// How the robot may be moving now.
@@ -461,12 +470,12 @@ pub struct Surroundings<'a, const N: usize> {
 impl<const N: usize> Surroundings<'_, N> {
     /// Whether there is room for a command.
     #[must_use]
-    pub fn admit(&self, guard: &Guard, command: Command) -> bool {
+    pub fn admit(&self, guard: &Guard, twist: Twist) -> bool {
         let limits = &guard.limits;
         guard
-            .plan(command.speed, command.turn_rate, &self.motion)
+            .plan(twist.speed, twist.turn_rate, &self.motion)
             .is_some_and(|plan| self.tight(limits, &plan).is_none())
-            && !self.touches_in_time(limits, command.speed)
+            && !self.touches_in_time(limits, twist.speed)
     }
 
     /// The first sonar with too little room for a plan.
@@ -489,9 +498,9 @@ impl<const N: usize> Surroundings<'_, N> {
     }
 
     /// Why there is no room for a command.
-    fn obstruction(&self, guard: &Guard, command: Command) -> Limit {
+    fn obstruction(&self, guard: &Guard, twist: Twist) -> Limit {
         let limits = &guard.limits;
-        let plan = guard.plan(command.speed, command.turn_rate, &self.motion);
+        let plan = guard.plan(twist.speed, twist.turn_rate, &self.motion);
         match plan.and_then(|plan| self.tight(limits, &plan)) {
             Some(sonar) => Limit::Clearance { sonar },
             None if plan.is_none() => Limit::Base,
@@ -500,11 +509,11 @@ impl<const N: usize> Surroundings<'_, N> {
     }
 }
 
-/// A command that the shield admits.
+/// What the guard admits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Admission {
-    /// The command.
-    pub command: Command,
+    /// What the robot may be told.
+    pub twist: Twist,
     /// What made it slower than advised, if anything did.
     pub limit: Option<Limit>,
 }
@@ -762,9 +771,9 @@ impl Shield {
     /// How the robot may be moving now. What was measured is at most 10 m/s and 20 rad/s.
     fn motion<const N: usize>(&self, view: &View<N>) -> Motion {
         let limits = &self.guard.limits;
-        let turn_rate = millimetres_up(view.turn_rate.abs()).max(self.last.turn_rate.abs());
+        let turn_rate = millimetres_up(view.turn_rate.abs()).max(self.last.0.turn_rate.abs());
         // Wheels that turn are measured as turning: after a command to rest, 0 is rest.
-        if view.speed == 0.0 && self.last.speed == 0 {
+        if view.speed == 0.0 && self.last.0.speed == 0 {
             return Motion {
                 speed: 0,
                 backward: false,
@@ -775,8 +784,8 @@ impl Shield {
         let gained = divide_up(limits.acceleration * age, 1000);
         let measured = millimetres_up(view.speed.abs()) + limits.speed_error + gained;
         Motion {
-            speed: measured.max(self.last.speed.abs()),
-            backward: view.speed < 0.0 || (view.speed == 0.0 && self.last.speed < 0),
+            speed: measured.max(self.last.0.speed.abs()),
+            backward: view.speed < 0.0 || (view.speed == 0.0 && self.last.0.speed < 0),
             turn_rate,
         }
     }
@@ -795,7 +804,8 @@ impl Shield {
         view: &View<N>,
         ring: &Ring<N>,
     ) -> Verdict {
-        if !(advice.speed.is_finite() && advice.turn_rate.is_finite()) {
+        let advised = whole(advice);
+        if advised.is_none() {
             self.halt(StopReason::AdviceInvalid, view.now);
         }
         // A pause between ticks gives no licence to leap.
@@ -808,16 +818,13 @@ impl Shield {
         let free = self.stop.is_none();
         let turns = !self.latched && self.stop.is_none_or(StopReason::may_turn);
         let unseen = view.obstacle.is_some_and(|obstacle| !obstacle.seen_now);
-        let mut advised = Command {
-            speed: (advice.speed * 1000.0) as i32,
-            turn_rate: (advice.turn_rate * 1000.0) as i32,
-        };
+        let mut advised = advised.unwrap_or(Twist::REST);
         // A stopped robot may turn on the spot and back off, if that is what the law advises.
         if !free && advised.speed > 0 {
-            advised = Command::REST;
+            advised = Twist::REST;
         }
         let mut admission = Admission {
-            command: Command::REST,
+            twist: Twist::REST,
             limit: None,
         };
         if turns {
@@ -831,7 +838,7 @@ impl Shield {
             let gaining = if unseen { 0 } else { elapsed };
             admission =
                 self.guard
-                    .admissible(advised, self.last, [gaining, elapsed], &surroundings);
+                    .admissible(advised, self.last.0, [gaining, elapsed], &surroundings);
         }
         let limited = matches!(
             admission.limit,
@@ -850,16 +857,17 @@ impl Shield {
             self.last_tick = Some(now);
         }
         let admission = Admission {
-            command: Command::REST,
+            twist: Twist::REST,
             limit: None,
         };
         self.verdict(admission, Action::Run, now)
     }
 
     fn verdict(&mut self, admission: Admission, action: Action, now: Instant) -> Verdict {
-        let Admission { command, limit } = admission;
+        let Admission { twist, limit } = admission;
+        let command = Command(twist);
         self.monitor
-            .told(command.speed.saturating_abs(), now, &self.guard.limits);
+            .told(twist.speed.saturating_abs(), now, &self.guard.limits);
         self.last = command;
         let stopped = self.stop.map_or(Action::Run, |_| Action::Stop);
         let latched = if self.latched {
@@ -874,6 +882,22 @@ impl Shield {
             limit,
         }
     }
+}
+
+/// The greatest speed, m/s, and turn rate, rad/s, that make sense as advice.
+const ADVICE_MAX: Advice = Advice {
+    speed: 10.0,
+    turn_rate: 20.0,
+};
+
+/// Advice in whole numbers; none if it is no number, or far beyond what any base can do.
+fn whole(advice: Advice) -> Option<Twist> {
+    let sensible =
+        advice.speed.abs() <= ADVICE_MAX.speed && advice.turn_rate.abs() <= ADVICE_MAX.turn_rate;
+    sensible.then(|| Twist {
+        speed: (advice.speed * 1000.0) as i32,
+        turn_rate: (advice.turn_rate * 1000.0) as i32,
+    })
 }
 
 /// The greatest number in 0..=`wish` that is admitted, where admission only gets harder with size;

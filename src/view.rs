@@ -170,8 +170,7 @@ impl Echo {
         let turned = grown(self.odometer.turned, odometer.turned);
         let [least, most] = sonar.closing.face;
         let (least, most) = ((least - turned).max(-1000), (most + turned).min(1000));
-        // The face is no farther than 3 m from the centre, and usually much nearer.
-        let lever = millimetres_up(math::norm(sonar.position)) * turned.min(1000) / 1000;
+        let lever = sonar.lever * turned.min(1000) / 1000;
         [
             (least * ahead - most * back) / 1000 - lever - 1,
             (most * ahead - least * back) / 1000 + lever + 1,

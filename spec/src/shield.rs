@@ -162,8 +162,10 @@ pub fn turn_ends_before_contact(
 /// neither part is greater than advised.
 #[must_use]
 pub fn no_tighter(speed: i32, turn_rate: i32, advised_speed: i32, advised_turn_rate: i32) -> bool {
-    let [v, w, a, o] = [speed, turn_rate, advised_speed, advised_turn_rate].map(i64::from);
-    w.abs() * a.abs() <= o.abs() * v.abs() && v.abs() <= a.abs() && w.abs() <= o.abs()
+    // Up to 10,000 mm/s and 20,000 mrad/s: no product overflows.
+    turn_rate.abs() * advised_speed.abs() <= advised_turn_rate.abs() * speed.abs()
+        && speed.abs() <= advised_speed.abs()
+        && turn_rate.abs() <= advised_turn_rate.abs()
 }
 
 /// shield.INV-14: a thing that is nearer, was seen longer ago, since when the robot has gone or

@@ -1,0 +1,100 @@
+//! Chapter `failsafe`: actions are a join-semilattice, latched stops hold.
+
+#[cfg(not(kani))]
+use super::kani;
+use sidestep::failsafe::{Action, StopReason};
+use sidestep::shield::Shield;
+use sidestep_spec::failsafe as promise;
+
+fn any_action() -> Action {
+    Action::ALL[kani::any::<u8>() as usize % Action::ALL.len()]
+}
+
+fn any_reason() -> StopReason {
+    StopReason::EACH[kani::any::<u8>() as usize % StopReason::EACH.len()]
+}
+
+/// Any three actions.
+//= failsafe.INV-1
+//= failsafe.INV-2
+//= failsafe.INV-3
+//= failsafe.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn actions_form_a_semilattice() {
+    let (a, b, c) = (any_action(), any_action(), any_action());
+    assert!(promise::commutative(a.join(b), b.join(a)));
+    assert!(promise::associative(a.join(b).join(c), a.join(b.join(c))));
+    assert!(promise::idempotent(a.join(a), a));
+    assert!(promise::monotone(a.join(b), a));
+    assert!(promise::monotone(a.join(b), b));
+    if a <= c {
+        assert!(promise::monotone(c.join(b), a.join(b)));
+    }
+    kani::cover!(
+        a.join(b) == Action::LatchedStop && a == Action::Run,
+        "joined"
+    );
+}
+
+/// Any three causes, in any order.
+//= failsafe.INV-6
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(25))]
+pub fn worst_cause_is_named() {
+    let causes = [any_reason(), any_reason(), any_reason()];
+    let mut named = None;
+    for cause in causes {
+        named = StopReason::worse(named, Some(cause));
+    }
+    for cause in causes {
+        assert!(named.is_some_and(|named| promise::worst_is_named(named.action(), cause.action())));
+    }
+    kani::cover!(
+        named == Some(causes[2]) && causes[2].action() > causes[0].action(),
+        "the last is the worst"
+    );
+}
+
+/// A latched stop holds whatever the next view and the next advice are.
+//= failsafe.INV-5
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, super::shield::any_fit))]
+#[cfg_attr(
+    kani,
+    kani::stub(
+        crate::shield::Limits::contact_within_stop_time,
+        super::shield::any_contact
+    )
+)]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, super::shield::any_plan))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Guard::admissible, super::shield::any_admission)
+)]
+pub fn latched_stop_holds() {
+    let config = super::view::blind_pioneer();
+    let ring = super::view::one_sonar(&config);
+    let mut shield = Shield::new(&config);
+    shield.refuse(any_reason(), sidestep::quantity::Instant(1000));
+    let was_latched = shield.is_latched();
+    let view = super::view::any_view();
+    shield.assess(&view, &ring);
+    let advice = sidestep::law::Advice {
+        speed: kani::any(),
+        turn_rate: kani::any(),
+    };
+    let verdict = shield.admit(advice, &view, &ring);
+    assert!(promise::latched_rests(
+        was_latched,
+        shield.is_latched(),
+        verdict.command.speed(),
+        verdict.command.turn_rate()
+    ));
+    kani::cover!(was_latched, "latched");
+    kani::cover!(!was_latched && verdict.stop.is_none(), "free");
+}
