@@ -10,6 +10,7 @@ pub mod demo;
 pub mod draw;
 pub mod drive;
 pub mod emulate;
+pub mod episodes;
 pub mod log;
 pub mod pilot;
 pub mod replay;
