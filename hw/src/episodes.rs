@@ -10,13 +10,14 @@ use sidestep::arcos::{BaseParameters, command};
 use sidestep::avoid::Avoid;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
+use sidestep::quantity::OutOfRange;
 use sidestep::view::View;
 use sidestep_sim::STEP_MS;
 use sidestep_sim::episode::{Episode, Options};
 use sidestep_sim::link::{self, Link, Packet};
 use sidestep_sim::robot::Firing;
 use sidestep_sim::scenario::Scenario;
-use sidestep_sim::simulation::{ByKind, MovingContact, Outcome, Simulation};
+use sidestep_sim::simulation::{ByKind, MovingContact, Outcome, Sample, Simulation};
 use sidestep_sim::truth::{Assumptions, Broken};
 use std::collections::{BTreeMap, VecDeque};
 use std::error::Error;
@@ -25,11 +26,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Numbers out of a seed.
 #[derive(Clone, Debug)]
-struct Random(u64);
+pub(crate) struct Random(pub u64);
 
 impl Random {
     /// Any bits (splitmix64).
-    fn bits(&mut self) -> u64 {
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -38,11 +39,11 @@ impl Random {
     }
 
     /// A number in [−1, 1).
-    fn signed(&mut self) -> f32 {
+    pub(crate) fn signed(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1 << 23) as f32 - 1.0
     }
 
-    fn below(&mut self, end: u64) -> u64 {
+    pub(crate) fn below(&mut self, end: u64) -> u64 {
         self.bits() % end.max(1)
     }
 }
@@ -196,12 +197,54 @@ pub fn assumptions(config: &RobotConfig) -> Assumptions {
     }
 }
 
-/// A pilot and a simulated robot in virtual time, with a line between them that may be bad.
-pub struct Ride<L> {
+/// A pilot through `scenario` that leaves no log.
+///
+/// # Errors
+/// If the goal is out of range, or the ring of sonars does not fit.
+pub fn pilot<L: Law<16>>(
+    scenario: &Scenario,
+    config: &RobotConfig,
+    settings: Settings,
+    law: L,
+) -> Result<Pilot<L, 16>, OutOfRange> {
+    let goal = goal_from_start(scenario);
+    Pilot::with_law(law, *config, goal, settings, Box::new(std::io::sink()))
+}
+
+/// The side of the line that decides, in virtual time.
+pub trait Host {
+    /// Takes in what arrived at `now` (ms).
+    fn receive(&mut self, bytes: &[u8], now: u64);
+
+    /// What is to be done with the transport next.
+    fn poll(&mut self, now: u64) -> Option<Output>;
+
+    /// What the law is doing, once it was asked.
+    fn mode(&self) -> Option<&'static str>;
+}
+
+impl<L: Law<16>> Host for Pilot<L, 16> {
+    fn receive(&mut self, bytes: &[u8], now: u64) {
+        Self::receive(self, bytes, now);
+    }
+
+    fn poll(&mut self, now: u64) -> Option<Output> {
+        let output = Self::poll(self, now);
+        while self.next_event().is_some() {}
+        output
+    }
+
+    fn mode(&self) -> Option<&'static str> {
+        self.latest().map(|decision| decision.mode)
+    }
+}
+
+/// A host and a simulated robot in virtual time, with a line between them that may be bad.
+pub struct Ride<H> {
     /// World and robot.
     pub simulation: Simulation,
     /// The host.
-    pub pilot: Pilot<L, 16>,
+    pub host: H,
     to_host: Link,
     to_robot: Link,
     now: u64,
@@ -209,44 +252,41 @@ pub struct Ride<L> {
     stalled_until: u64,
     /// When that was so which the host heard last (ms).
     heard: u64,
-    /// Velocities under way inside the base: when each takes effect, and what it rests on (ms).
-    effects: VecDeque<(u64, u64)>,
-    /// What the velocity in force rests on (ms).
-    in_force: u64,
+    /// Speeds and turn rates under way inside the base: when each takes effect, the command's number,
+    /// and what it rests on (ms).
+    effects: VecDeque<(u64, u8, u64)>,
+    /// What the speed and the turn rate in force rest on (ms).
+    in_force: [u64; 2],
     /// Age of the oldest reading of a packet when it is sent (ms).
     reading_age: u64,
 }
 
-impl<L: Law<16>> Ride<L> {
-    /// A ride through `scenario`, which `simulation` is at the beginning of.
+impl<H: Host> Ride<H> {
+    /// A ride of `host` in `simulation`; what goes wrong on `line` follows from `seed`.
     ///
     /// # Errors
-    /// If the goal or a fault of the line is out of range.
+    /// If a fault of the line is out of range.
     pub fn new(
-        scenario: &Scenario,
         simulation: Simulation,
-        config: &RobotConfig,
-        settings: Settings,
-        law: L,
+        host: H,
         line: link::Faults,
-    ) -> Result<Self, Box<dyn Error>> {
-        let log = Box::new(std::io::sink());
-        let goal = goal_from_start(scenario);
-        let parameters = &scenario.robot;
+        seed: u64,
+    ) -> Result<Self, sidestep_sim::Error> {
+        let robot = simulation.robot().parameters();
         Ok(Self {
-            simulation,
-            pilot: Pilot::with_law(law, *config, goal, settings, log)?,
-            to_host: Link::new(line, scenario.seed)?,
-            to_robot: Link::new(line, !scenario.seed)?,
+            host,
+            to_host: Link::new(line, seed)?,
+            to_robot: Link::new(line, !seed)?,
             now: 0,
             stalled_until: 0,
             heard: 0,
             effects: VecDeque::new(),
-            in_force: 0,
-            reading_age: match parameters.firing {
+            in_force: [0; 2],
+            reading_age: match robot.firing {
                 Firing::All => 0,
-                Firing::RoundRobin { .. } => parameters.sip_cycle_ms.into(),
+                Firing::RoundRobin { .. } => robot.sip_cycle_ms.into(),
             },
+            simulation,
         })
     }
 
@@ -254,12 +294,6 @@ impl<L: Law<16>> Ride<L> {
     #[must_use]
     pub const fn now(&self) -> u64 {
         self.now
-    }
-
-    /// What the law is doing, once it was asked.
-    #[must_use]
-    pub fn mode(&self) -> Option<&'static str> {
-        self.pilot.latest().map(|decision| decision.mode)
     }
 
     /// Makes the line bad or good from now on.
@@ -270,14 +304,13 @@ impl<L: Law<16>> Ride<L> {
         &mut self,
         to_host: link::Faults,
         to_robot: link::Faults,
-    ) -> Result<(), Box<dyn Error>> {
+    ) -> Result<(), sidestep_sim::Error> {
         self.to_host.set_faults(to_host)?;
-        self.to_robot.set_faults(to_robot)?;
-        Ok(())
+        self.to_robot.set_faults(to_robot)
     }
 
     /// The host does nothing for `ms` from now on; what it is sent meanwhile waits for it.
-    pub fn stall(&mut self, ms: u64) {
+    pub const fn stall(&mut self, ms: u64) {
         self.stalled_until = self.now + ms;
     }
 
@@ -293,32 +326,37 @@ impl<L: Law<16>> Ride<L> {
         if now >= self.stalled_until {
             for Packet { bytes, basis_ms } in self.to_host.arrivals(now) {
                 self.heard = basis_ms;
-                self.pilot.receive(&bytes, now);
+                self.host.receive(&bytes, now);
             }
-            while let Some(output) = self.pilot.poll(now) {
+            while let Some(output) = self.host.poll(now) {
                 if let Output::Send(bytes) = output {
                     self.to_robot.send(&bytes, now, self.heard);
                 }
             }
-            while self.pilot.next_event().is_some() {}
         }
         for Packet { bytes, basis_ms } in self.to_robot.arrivals(now) {
             let robot = self.simulation.robot_mut();
-            if bytes.get(3) == Some(&command::VEL) {
+            // Header and length stand before a frame's number.
+            if let Some(&number @ (command::VEL | command::RVEL)) = bytes.get(3) {
                 let delay = robot.base().parameters().delay_ms;
-                self.effects.push_back((now + delay, basis_ms));
+                self.effects.push_back((now + delay, number, basis_ms));
             }
             robot.receive(&bytes);
         }
     }
 
     fn note_reaction(&mut self) {
-        while let Some((_, basis)) = self.effects.pop_front_if(|(due, _)| *due < self.now) {
-            self.in_force = basis;
+        let now = self.now;
+        while let Some((_, number, basis)) = self.effects.pop_front_if(|(due, ..)| *due < now) {
+            self.in_force[usize::from(number == command::RVEL)] = basis;
         }
-        if self.simulation.robot().base().speed_setpoint() != 0.0 {
-            let age = self.now.saturating_sub(self.in_force);
-            self.simulation.truth_mut().note_reaction(age);
+        let base = self.simulation.robot().base();
+        let told = [base.speed_setpoint(), base.turn_rate_setpoint()];
+        for (told, basis) in told.into_iter().zip(self.in_force) {
+            if told != 0.0 {
+                let age = now.saturating_sub(basis);
+                self.simulation.truth_mut().note_reaction(age);
+            }
         }
     }
 }
@@ -420,27 +458,26 @@ fn run_with<L: Law<16>>(
     law: L,
 ) -> Result<Run, Box<dyn Error>> {
     let episode = Episode::new(seed, options)?;
-    let mut ride = Ride::new(
+    let pilot = pilot(
         &episode.scenario,
-        episode.simulate()?,
         config,
         settings(config, false, None),
         law,
-        episode.link,
     )?;
+    let mut ride = Ride::new(episode.simulate()?, pilot, episode.link, seed)?;
     let (mut ticks, mut ticks_stopped) = (0, 0);
     while ride.now() < episode.scenario.time_limit_ms {
         ride.step();
-        let tally = ride.pilot.tally();
+        let tally = ride.host.tally();
         if tally.arrived.is_some() {
             break;
         }
-        let stopped = ride.pilot.latest().is_some_and(|d| d.stop.is_some());
+        let stopped = ride.host.latest().is_some_and(|d| d.stop.is_some());
         ticks_stopped += if stopped { tally.ticks - ticks } else { 0 };
         ticks = tally.ticks;
     }
-    let tally = ride.pilot.tally();
-    let stops = ride.pilot.stops().iter().map(|stop| Stop {
+    let tally = ride.host.tally();
+    let stops = ride.host.stops().iter().map(|stop| Stop {
         t: stop.t,
         reason: stop.reason.to_string(),
     });
@@ -460,6 +497,17 @@ fn run_with<L: Law<16>>(
         scenario: episode.scenario,
         simulation: ride.simulation,
     })
+}
+
+/// How long after the last of the people had left its way the robot moved again, faster than
+/// `speed` (m/s), in ms: 0 if it moved at that moment or had arrived. Nothing if it never did, or
+/// if nobody left its way.
+#[must_use]
+pub fn moving_again_ms(scenario: &Scenario, trace: &[Sample], speed: f64) -> Option<u64> {
+    let free = scenario.way_free_ms(trace)?;
+    let mut after = trace.iter().skip_while(|sample| sample.time_ms < free);
+    let moving = after.find(|sample| sample.speed.abs() > speed)?;
+    Some(moving.time_ms - free)
 }
 
 /// Failures of which a [`Totals`] keeps the particulars.

@@ -292,6 +292,12 @@ impl Base {
         self.wanted_speed()
     }
 
+    /// The turn rate it is after, counter-clockwise positive (rad/s).
+    #[must_use]
+    pub fn turn_rate_setpoint(&self) -> f64 {
+        self.wanted_turn_rate()
+    }
+
     /// Gives an order, which takes effect after the delay. An order that is not finite is ignored.
     pub fn order(&mut self, order: Order) {
         let finite = match order {

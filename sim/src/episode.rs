@@ -269,7 +269,12 @@ impl Stage {
                 continue;
             }
             if self.rng.random_bool(0.5) {
-                let radius = self.rng.random_range(0.05..=0.3);
+                // From a chair's leg to a pillar.
+                let radius = if self.rng.random_bool(0.5) {
+                    self.rng.random_range(0.01..=0.05)
+                } else {
+                    self.rng.random_range(0.05..=0.3)
+                };
                 self.world.add_disc(place, radius)?;
             } else {
                 let heading = self.rng.random_range(-PI..=PI);
@@ -380,6 +385,9 @@ impl Stage {
 
     fn add(&mut self, motion: Motion) -> Result<(), Error> {
         let mut person = Person::new(motion)?.stopped_by_walls();
+        if self.rng.random_range(0..4) == 0 {
+            person = person.with_radius(self.rng.random_range(0.1..=RADIUS))?;
+        }
         if self.rng.random_range(0..4) == 0 {
             person = person.courteous(COURTESY_GAP)?;
         }

@@ -6,15 +6,14 @@ use std::path::Path;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::STEP_MS;
 use crate::error::{Error, require};
 use crate::eth;
 use crate::geometry::{Point, Pose, Vector, direction, heading_of};
 use crate::person::{COURTESY_GAP, Motion, Person};
 use crate::robot::{self, ArcosRobot};
-use crate::simulation::Simulation;
+use crate::simulation::{Sample, Simulation};
 use crate::sonar;
-use crate::world::{Footprint, World};
+use crate::world::World;
 
 /// The scenarios that need no data file.
 pub const NAMES: [&str; 9] = [
@@ -275,27 +274,18 @@ impl Scenario {
         Ok(self)
     }
 
-    /// When the last of the people has left the way (ms): is [`FREE`] away from the straight line
-    /// between start and goal and stays so until the time limit, with a robot that stays at the
-    /// start. Nothing if nobody was ever in the way, or if somebody never leaves it.
+    /// When the last of the people left the robot's way (ms): from then on nobody came within
+    /// [`FREE`] of the straight line from where the robot was to the goal. Nothing if nobody was ever
+    /// in the way, or if somebody was to the end of `trace`.
     #[must_use]
-    pub fn way_free_ms(&self) -> Option<u64> {
-        let mut world = self.world.clone();
-        let robot = Footprint {
-            centre: self.start.position,
-            radius: self.robot.base.radius,
-            still: true,
+    pub fn way_free_ms(&self, trace: &[Sample]) -> Option<u64> {
+        let barred = |sample: &Sample| {
+            let robot = sample.pose.position;
+            let mut people = sample.people.iter();
+            people.any(|(_, place)| from_segment(*place, robot, self.goal) < FREE)
         };
-        let mut left = None;
-        for time_ms in (0..self.time_limit_ms).step_by(STEP_MS as usize) {
-            let someone = world.people().iter().filter_map(Person::position);
-            let way = |place| from_segment(place, self.start.position, self.goal);
-            if someone.map(way).any(|distance| distance < FREE) {
-                left = Some(time_ms + STEP_MS);
-            }
-            world.step(&robot);
-        }
-        left.filter(|time_ms| *time_ms < self.time_limit_ms)
+        let last = trace.iter().rposition(barred)?;
+        trace.get(last + 1).map(|sample| sample.time_ms)
     }
 
     /// The situation at its beginning.
@@ -428,7 +418,7 @@ fn empty_room(knobs: &Knobs) -> Result<Scenario, Error> {
     })
 }
 
-/// How far from the straight way to the goal someone must be for the way to be free (m).
+/// How far from the robot's straight way to the goal someone must be for it to be free (m).
 pub const FREE: f64 = 1.2;
 
 /// Someone who stands in the robot's way where there is not much room, as the seed has it, and goes

@@ -112,6 +112,9 @@ impl fmt::Display for Broken {
             Self::Reaction { was, bound } => {
                 write!(f, "{name}: {was} ms, assumed at most {bound}")
             }
+            Self::Sonars(sonars) if sonars.len() > 4 => {
+                write!(f, "{name}: {} are broken", sonars.len())
+            }
             Self::Sonars(sonars) => write!(f, "{name}: broken {sonars:?}"),
         }
     }
