@@ -3,7 +3,8 @@
 //! `cargo run --release -p sidestep-hw --example episodes -- COUNT [KEY=VALUE …]`, where a key is
 //! - `law`: `avoid` (the default), `chaos` or `reckless`;
 //! - `seed`: the first one; `threads`;
-//! - `draw`: a folder for pictures of the first failures, or of all episodes if there are up to ten;
+//! - `draw`: a folder for pictures of the first failures, or of all episodes if there are up to ten,
+//!   each with a list of every decision;
 //! - `speed`: the fastest that people are (m/s), the greatest speed of the promise unless given;
 //! - `dropout`, `false_echo`, `noise`, `delay_ms`, `time_limit_ms`: of the episodes;
 //! - or a configuration parameter as in the TOML file.
@@ -72,8 +73,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             failures
         };
         for seed in seeds {
-            let run = run(seed, &options, &config, law)?;
+            let mut lines = String::new();
+            let mut tell = |line: String| lines += &(line + "\n");
+            let run = run(seed, &options, &config, law, Some(&mut tell))?;
             std::fs::write(folder.join(format!("seed-{seed}.svg")), run.picture())?;
+            std::fs::write(folder.join(format!("seed-{seed}.txt")), lines)?;
         }
     }
     if totals.failed_unexplained > 0 {

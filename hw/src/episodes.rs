@@ -14,6 +14,7 @@ use sidestep::quantity::OutOfRange;
 use sidestep::view::View;
 use sidestep_sim::STEP_MS;
 use sidestep_sim::episode::{Episode, Options};
+use sidestep_sim::geometry::{heading_of, wrap};
 use sidestep_sim::link::{self, Link, Packet};
 use sidestep_sim::robot::Firing;
 use sidestep_sim::scenario::Scenario;
@@ -434,6 +435,9 @@ pub fn describe(contact: &MovingContact) -> String {
     )
 }
 
+/// Is told each decision in a line, to find out how something came about.
+pub type Tell<'a> = Option<&'a mut dyn FnMut(String)>;
+
 /// Runs the episode that `seed` makes up.
 ///
 /// # Errors
@@ -443,11 +447,12 @@ pub fn run(
     options: &Options,
     config: &RobotConfig,
     law: LawKind,
+    tell: Tell<'_>,
 ) -> Result<Run, Box<dyn Error>> {
     match law {
-        LawKind::Avoid => run_with(seed, options, config, Avoid::new(config.core)),
-        LawKind::Chaos => run_with(seed, options, config, Chaos::new(seed)),
-        LawKind::Reckless => run_with(seed, options, config, Reckless),
+        LawKind::Avoid => run_with(seed, options, config, Avoid::new(config.core), tell),
+        LawKind::Chaos => run_with(seed, options, config, Chaos::new(seed), tell),
+        LawKind::Reckless => run_with(seed, options, config, Reckless, tell),
     }
 }
 
@@ -456,6 +461,7 @@ fn run_with<L: Law<16>>(
     options: &Options,
     config: &RobotConfig,
     law: L,
+    mut tell: Tell<'_>,
 ) -> Result<Run, Box<dyn Error>> {
     let episode = Episode::new(seed, options)?;
     let pilot = pilot(
@@ -474,6 +480,11 @@ fn run_with<L: Law<16>>(
         }
         let stopped = ride.host.latest().is_some_and(|d| d.stop.is_some());
         ticks_stopped += if stopped { tally.ticks - ticks } else { 0 };
+        if tally.ticks > ticks
+            && let Some(tell) = &mut tell
+        {
+            tell(decided(&ride));
+        }
         ticks = tally.ticks;
     }
     let tally = ride.host.tally();
@@ -497,6 +508,37 @@ fn run_with<L: Law<16>>(
         scenario: episode.scenario,
         simulation: ride.simulation,
     })
+}
+
+/// What was decided last, and how things truly are.
+fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
+    let base = ride.simulation.robot().base();
+    let pose = base.pose();
+    let mut line = format!(
+        "{:6} ms at {:.2}, {:.2} m, {:.0}°: {:.3} m/s, {:.2} rad/s;",
+        ride.now(),
+        pose.position.x,
+        pose.position.y,
+        pose.heading.to_degrees(),
+        base.speed(),
+        base.turn_rate()
+    );
+    if let Some(decision) = ride.host.latest() {
+        let (speed, turn) = (decision.command.speed(), decision.command.turn_rate());
+        line += &format!(" told {speed} mm/s, {turn} mrad/s, {}", decision.mode);
+        if let Some(stop) = decision.stop {
+            line += &format!(", stop: {stop}");
+        }
+    }
+    for person in ride.simulation.world().people() {
+        if let Some(place) = person.position() {
+            let offset = place - pose.position;
+            let gap = offset.norm() - person.radius() - base.parameters().radius;
+            let bearing = wrap(heading_of(&offset) - pose.heading).to_degrees();
+            line += &format!("; person {gap:.3} m off at {bearing:.0}°");
+        }
+    }
+    line
 }
 
 /// How long after the last of the people had left its way the robot moved again, faster than
@@ -703,7 +745,7 @@ pub fn run_many(
                 return Ok(totals);
             }
             progress(done);
-            let run = run(first + done, options, config, law).map_err(|e| e.to_string())?;
+            let run = run(first + done, options, config, law, None).map_err(|e| e.to_string())?;
             totals.add(run.report);
         }
     };

@@ -240,6 +240,12 @@ impl Person {
         self
     }
 
+    /// Whether walls stop this person.
+    #[must_use]
+    pub fn is_stopped_by_walls(&self) -> bool {
+        self.bodily || matches!(self.motion, Motion::Walk { .. })
+    }
+
     /// How the person moves.
     #[must_use]
     pub fn motion(&self) -> &Motion {
@@ -337,22 +343,16 @@ impl Person {
             Some(gap) if robot.still => gap,
             _ => -PRESS,
         };
-        let keep = robot.radius + self.radius + gap;
         let offset = position - robot.centre;
-        let nearer = |step: Vector| {
-            let after = (offset + step).norm();
-            after < keep && after < offset.norm()
-        };
-        if !nearer(step) {
+        // Who is nearer than that already comes no nearer.
+        let keep = (robot.radius + self.radius + gap).min(offset.norm());
+        let after = offset + step;
+        if after.norm() >= keep {
             return step;
         }
-        let outward = offset.try_normalize(1e-9).unwrap_or_else(Vector::x);
-        let along = step - outward * step.dot(&outward).min(0.0);
-        if nearer(along) {
-            Vector::zeros()
-        } else {
-            along
-        }
+        let outward = after.try_normalize(1e-9).unwrap_or_else(Vector::x);
+        let left = outward * keep - offset;
+        left * (step.norm() / left.norm()).min(1.0)
     }
 
     /// A step of someone who walks about and can change their velocity by no more than `change`

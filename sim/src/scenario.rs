@@ -194,7 +194,8 @@ impl Scenario {
     ///
     /// - Someone who walks straight on comes from about the same direction (±20°), at a speed up to
     ///   `speed_limit` in (0, 5] (m/s), and aims within 0.5 m of where the robot would be by then.
-    ///   Nobody starts right beside the robot.
+    ///   Nobody starts right beside the robot. Someone whom walls stop keeps to their line, and
+    ///   changes only the speed.
     /// - Someone who walks from waypoint to waypoint does so at another such speed and after
     ///   another delay, on patrol beginning at any of the waypoints.
     /// - Someone who walks about does so up to `speed_limit`, and otherwise chooses.
@@ -212,6 +213,18 @@ impl Scenario {
         let keep = self.robot.base.radius + INITIAL_CLEARANCE;
         for person in self.world.people_mut() {
             let motion = match person.motion().clone() {
+                // Who is to stay between walls stays on the way that leads there.
+                Motion::Line {
+                    start,
+                    heading,
+                    delay,
+                    ..
+                } if person.is_stopped_by_walls() => Motion::Line {
+                    start,
+                    heading,
+                    speed: speed_limit * rng.random_range(0.25..=1.0),
+                    delay,
+                },
                 Motion::Line { heading, .. } => {
                     let speed = speed_limit * rng.random_range(0.25..=1.0);
                     let heading = heading + rng.random_range(-20.0..=20.0_f64).to_radians();
@@ -364,7 +377,8 @@ fn lab(knobs: &Knobs) -> Result<Scenario, Error> {
 }
 
 /// A straight corridor 1.2 m wide and 10 m long, with open ends, which the robot drives from near
-/// one end to near the other; with someone who comes along it the other way, if asked for.
+/// one end to near the other; with someone who comes along it the other way, if asked for, from where
+/// the seed has it.
 fn corridor(knobs: &Knobs, walker: bool) -> Result<Scenario, Error> {
     let mut world = World::new();
     for y in [-0.6, 0.6] {
@@ -372,8 +386,10 @@ fn corridor(knobs: &Knobs, walker: bool) -> Result<Scenario, Error> {
     }
     let speed = knobs.person_speed.unwrap_or(0.8);
     if walker {
+        let mut rng = ChaCha8Rng::seed_from_u64(knobs.seed);
+        rng.set_stream(u64::MAX - 1);
         let line = Motion::Line {
-            start: Point::new(9.0, 0.0),
+            start: Point::new(rng.random_range(5.0..=9.0), rng.random_range(-0.2..=0.2)),
             heading: PI,
             speed,
             delay: 0.0,
@@ -439,7 +455,7 @@ fn blocked_way(knobs: &Knobs) -> Result<Scenario, Error> {
             world.add_box(middle, length, 0.6)?;
         }
         // On through the passage and away, not back over the robot.
-        let stands = Point::new(rng.random_range(1.2..=2.6), rng.random_range(-0.3..=0.3));
+        let stands = Point::new(rng.random_range(1.0..=2.0), rng.random_range(-0.3..=0.3));
         let beyond = Point::new(3.6, 0.0);
         (stands, vec![beyond, Point::new(3.6, side * 6.0)])
     } else {
@@ -451,7 +467,7 @@ fn blocked_way(knobs: &Knobs) -> Result<Scenario, Error> {
     let speed = knobs
         .person_speed
         .unwrap_or_else(|| rng.random_range(0.3..=0.8));
-    let delay = rng.random_range(8.0..=16.0);
+    let delay = rng.random_range(10.0..=16.0);
     let stands = Motion::Path {
         start,
         waypoints,
