@@ -2,7 +2,8 @@
 //!
 //! [`pilot`] is the control loop without I/O: [`session`] speaks the ARCOS protocol, [`base`]
 //! makes observations of its packets, the core decides, [`log`] records. [`drive`] runs it in
-//! real time over a [`transport`]. The rest is the program `sidestep`.
+//! real time over a [`transport`]. [`episodes`] and [`faults`] run it in virtual time by the
+//! thousand, to see whether anything is ever touched. The rest is the program `sidestep`.
 
 pub mod base;
 pub mod config;
@@ -10,6 +11,8 @@ pub mod demo;
 pub mod draw;
 pub mod drive;
 pub mod emulate;
+pub mod episodes;
+pub mod faults;
 pub mod log;
 pub mod pilot;
 pub mod replay;

@@ -5,6 +5,7 @@ use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::emulate::{Line, Link, serve};
+use sidestep_hw::faults;
 use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_hw::replay::{self, Columns};
 use sidestep_hw::{log, transport};
@@ -36,8 +37,10 @@ enum Command {
     /// anything while it moved.
     ///
     /// Scenarios: fig12 (the three of S1's Figure 12, the default), fig12-head-on, fig12-crossing,
-    /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table), hotel
-    /// (recorded people; needs --data).
+    /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
+    /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
+    /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
+    /// people; needs --data).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -119,6 +122,18 @@ enum Command {
         /// The configuration for a CSV.
         #[arg(long, value_name = "FILE")]
         config: Option<PathBuf>,
+    },
+    /// Let every fault of sensors, line, loop and base strike in every mode with every preset.
+    ///
+    /// Prints a table: at rest before contact, or what happened. Fails if the robot was in contact
+    /// while it moved although the shield's assumptions held.
+    Faults {
+        /// Runs for each fault in each mode with each preset.
+        #[arg(long, default_value_t = 60)]
+        seeds: u64,
+        /// Write the table to FILE instead.
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
     },
     /// Print the default configuration, commented.
     Config,
@@ -235,6 +250,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 replay_log(&file)
             }
         }
+        Command::Faults { seeds, out } => run_faults(seeds, out.as_deref()),
         Command::Config => {
             print!("{}", config::default_toml());
             Ok(ExitCode::SUCCESS)
@@ -260,6 +276,28 @@ fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         return Err(format!("the robot touched something {contacts} times while it moved").into());
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn run_faults(seeds: u64, out: Option<&Path>) -> Result<ExitCode, Box<dyn Error>> {
+    let table = faults::run_all(seeds, 2, |done, count| {
+        if done.is_multiple_of(20) {
+            eprintln!("{done} of {count} cells");
+        }
+    })?;
+    let text = table.markdown();
+    match out {
+        Some(file) => {
+            std::fs::write(file, text).map_err(|error| format!("{}: {error}", file.display()))?
+        }
+        None => print!("{text}"),
+    }
+    match table.failures() {
+        0 => Ok(ExitCode::SUCCESS),
+        failures => Err(format!(
+            "the robot was in contact while it moved in {failures} runs in which that was not to be"
+        )
+        .into()),
+    }
 }
 
 fn run_base<const N: usize>(

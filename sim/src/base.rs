@@ -165,10 +165,40 @@ pub enum Activity {
     Driving,
 }
 
+/// What is wrong with a drive. The default is nothing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Faults {
+    /// Share of the deceleration it is set to with which it truly brakes, in (0, 10]: worn brakes, a
+    /// slippery floor, a load.
+    pub braking_share: f64,
+    /// Share of the acceleration it is set to with which it truly speeds up, in (0, 10].
+    pub acceleration_share: f64,
+}
+
+impl Default for Faults {
+    fn default() -> Self {
+        Self {
+            braking_share: 1.0,
+            acceleration_share: 1.0,
+        }
+    }
+}
+
+/// What the drive put into its last step, as it truly is (m/s²).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Effort {
+    /// The deceleration available, if it was slowing down.
+    pub braking: Option<f64>,
+    /// The acceleration available, if it was speeding up.
+    pub accelerating: Option<f64>,
+}
+
 /// A base in the world.
 #[derive(Debug, Clone)]
 pub struct Base {
     parameters: Parameters,
+    faults: Faults,
+    effort: Effort,
     limits: Limits,
     pose: Pose,
     odometry: Pose,
@@ -202,6 +232,8 @@ impl Base {
         Ok(Self {
             limits: parameters.limits.within(&parameters.top),
             parameters,
+            faults: Faults::default(),
+            effort: Effort::default(),
             pose,
             odometry: Pose::new(0.0, 0.0, 0.0),
             speed: 0.0,
@@ -234,6 +266,36 @@ impl Base {
         limits.check()?;
         self.limits = limits.within(&self.parameters.top);
         Ok(())
+    }
+
+    /// Makes the drive stronger or weaker than it is set to be.
+    pub fn set_faults(&mut self, faults: Faults) -> Result<(), Error> {
+        for (field, share) in [
+            ("base.braking_share", faults.braking_share),
+            ("base.acceleration_share", faults.acceleration_share),
+        ] {
+            require(field, share, "> 0, <= 10", |s| s > 0.0 && s <= 10.0)?;
+        }
+        self.faults = faults;
+        Ok(())
+    }
+
+    /// What the drive put into its last step.
+    #[must_use]
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// The speed it is after, forward positive (m/s).
+    #[must_use]
+    pub fn speed_setpoint(&self) -> f64 {
+        self.wanted_speed()
+    }
+
+    /// The turn rate it is after, counter-clockwise positive (rad/s).
+    #[must_use]
+    pub fn turn_rate_setpoint(&self) -> f64 {
+        self.wanted_turn_rate()
     }
 
     /// Gives an order, which takes effect after the delay. An order that is not finite is ignored.
@@ -348,8 +410,17 @@ impl Base {
         } else {
             self.limits
         };
+        let acceleration = acceleration * self.faults.acceleration_share;
+        let deceleration = deceleration * self.faults.braking_share;
         let before = (self.speed, self.turn_rate);
-        let (speed, distance) = ramp(self.speed, self.wanted_speed(), acceleration, deceleration);
+        let wanted = self.wanted_speed();
+        let slower = wanted.abs() < self.speed.abs() || wanted * self.speed < 0.0;
+        let faster = wanted.abs() > self.speed.abs() && !slower;
+        self.effort = Effort {
+            braking: slower.then_some(deceleration),
+            accelerating: faster.then_some(acceleration),
+        };
+        let (speed, distance) = ramp(self.speed, wanted, acceleration, deceleration);
         let (turn_rate, turn) = ramp(
             self.turn_rate,
             self.wanted_turn_rate(),

@@ -6,9 +6,10 @@
 //! - [`sonar`], [`compass`], [`base`]: what the robot senses with, wrongly where asked to, and what
 //!   it drives with.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
-//!   line set to the wrong baud rate makes of them.
-//! - [`scenario`]: named situations, and seeded variations of them; [`simulation`]: everything
-//!   advanced together, with a judgement of every contact.
+//!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
+//! - [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
+//!   from a seed; [`simulation`]: everything advanced together, with a judgement of every contact;
+//!   [`truth`]: which assumption of a shield did not hold in it.
 //!
 //! Lengths are in m, times in s or whole ms, angles in rad, counter-clockwise from +x. Time is
 //! always an argument, and every random number comes from a seed: the same calls give the same
@@ -30,15 +31,18 @@
 pub mod barn;
 pub mod base;
 pub mod compass;
+pub mod episode;
 mod error;
 pub mod eth;
 pub mod geometry;
+pub mod link;
 pub mod person;
 pub mod robot;
 pub mod scenario;
 pub mod simulation;
 pub mod sonar;
 mod table;
+pub mod truth;
 pub mod uart;
 pub mod world;
 

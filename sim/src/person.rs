@@ -1,8 +1,13 @@
 //! People: where they walk, and what they do about a robot that stands in their way.
 
+use core::f64::consts::PI;
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
 use crate::error::{Error, require};
 use crate::geometry::{Point, Vector, direction};
-use crate::world::{Footprint, Solid, check_place, check_size};
+use crate::world::{Footprint, Solid, Walls, check_place, check_size};
 
 /// Radius of a person seen from above (m): shoulder breadth and swinging arms.
 pub const RADIUS: f64 = 0.25;
@@ -15,6 +20,12 @@ const SPEED_LIMIT: f64 = 5.0;
 
 /// Where someone who walks straight ahead for ever is going (m).
 const HORIZON: f64 = 1e6;
+
+/// How deep someone who walks into the robot's hull gets (m): far enough to count as touching it.
+const PRESS: f64 = 0.002;
+
+/// Farthest from the robot that someone who wanders aims when it is the robot they are drawn to (m).
+const INTEREST: f64 = 1.5;
 
 /// How a person moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,11 +54,118 @@ pub enum Motion {
         /// Whether the first waypoint follows the last; otherwise the person stays at the last.
         patrol: bool,
     },
+    /// Stands at `start`, then after `delay` walks about as `habit` has it, speeding up, slowing
+    /// down and turning no harder than `acceleration` allows. Stopped by walls and by the robot's
+    /// hull.
+    Walk {
+        /// Where from (m).
+        start: Point,
+        /// Greatest speed, in [0, 5] (m/s).
+        speed: f64,
+        /// Greatest change of the velocity, in (0, 1000] (m/s²).
+        acceleration: f64,
+        /// Time before the first step (s).
+        delay: f64,
+        /// What they are after.
+        habit: Habit,
+        /// Seed of every choice they make.
+        seed: u64,
+    },
     /// Walks as recorded, in straight lines from sample to sample, and is there only from the first
     /// to the last.
     ///
     /// Nothing makes a recorded person deviate.
     Track(Vec<Sample>),
+}
+
+/// When a step ends, and past whom and what it leads.
+pub(crate) struct Moment<'a> {
+    /// When it ends (s).
+    pub time: f64,
+    /// How long it takes (s).
+    pub dt: f64,
+    pub robot: Footprint,
+    pub walls: Walls<'a>,
+}
+
+/// What someone who walks about is after.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Habit {
+    /// One way after the other, each for a while at a random speed: now in a random direction, now
+    /// past the robot, now standing.
+    Wander,
+    /// At the robot, aiming anew at every step, at full speed. Having reached it, or after some
+    /// seconds, away from it for a while, and then at it again.
+    Charge,
+}
+
+/// Where someone who walks about wants to go at the moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Leg {
+    /// With this velocity (m/s).
+    Steady(Vector),
+    /// At the robot at this speed (m/s).
+    Robot(f64),
+    /// Away from the robot at this speed (m/s).
+    Away(f64),
+}
+
+/// What someone who walks about keeps in mind.
+#[derive(Debug, Clone)]
+struct Stroll {
+    rng: ChaCha8Rng,
+    velocity: Vector,
+    leg: Leg,
+    /// When the leg ends (s).
+    until: f64,
+}
+
+impl Stroll {
+    fn new(seed: u64) -> Self {
+        Self {
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            velocity: Vector::zeros(),
+            leg: Leg::Away(0.0),
+            until: 0.0,
+        }
+    }
+
+    /// Chooses what to do from `time` (s) on, `offset` away from the robot (m), up to `speed` (m/s).
+    fn choose(&mut self, habit: Habit, time: f64, offset: Vector, speed: f64) {
+        let (leg, seconds) = match (habit, self.leg) {
+            (Habit::Charge, Leg::Robot(_)) => {
+                let speed = speed * self.rng.random_range(0.3..=1.0);
+                (Leg::Away(speed), self.rng.random_range(1.0..=3.0))
+            }
+            (Habit::Charge, _) => (Leg::Robot(speed), self.rng.random_range(2.0..=8.0)),
+            (Habit::Wander, _) => {
+                let part = self.rng.random_range(0.2..=1.0);
+                let anywhere = direction(self.rng.random_range(-PI..=PI));
+                let heading = match self.rng.random_range(0..4) {
+                    0 => Vector::zeros(),
+                    1 => anywhere,
+                    _ => {
+                        let near = anywhere * self.rng.random_range(0.0..=INTEREST);
+                        (near - offset).try_normalize(1e-9).unwrap_or(anywhere)
+                    }
+                };
+                let seconds = self.rng.random_range(0.3..=3.0);
+                (Leg::Steady(heading * (speed * part)), seconds)
+            }
+        };
+        self.leg = leg;
+        self.until = time + seconds;
+    }
+
+    /// The velocity wanted, `offset` away from the robot (m).
+    fn wanted(&self, offset: Vector) -> Vector {
+        let outward = || offset.try_normalize(1e-9).unwrap_or_else(Vector::x);
+        match self.leg {
+            Leg::Steady(velocity) => velocity,
+            Leg::Robot(speed) => outward() * -speed,
+            Leg::Away(speed) => outward() * speed,
+        }
+    }
 }
 
 /// Where a recorded person was seen.
@@ -65,10 +183,15 @@ pub struct Person {
     motion: Motion,
     radius: f64,
     courtesy: Option<f64>,
+    /// Whether walls stop this person.
+    bodily: bool,
     solid: Solid,
     position: Option<Point>,
+    /// Speed in the last step (m/s).
+    speed: f64,
     /// Index of the waypoint being walked to.
     next: usize,
+    stroll: Option<Stroll>,
 }
 
 impl Person {
@@ -81,9 +204,12 @@ impl Person {
             motion,
             radius: RADIUS,
             courtesy: None,
+            bodily: false,
             solid: Solid::disc(RADIUS),
             position: None,
+            speed: 0.0,
             next: 0,
+            stroll: None,
         };
         person.place_at(0.0);
         Ok(person)
@@ -104,6 +230,20 @@ impl Person {
     pub fn courteous(mut self, gap: f64) -> Result<Self, Error> {
         self.courtesy = Some(require("person.gap", gap, ">= 0 m", |g| g >= 0.0)?);
         Ok(self)
+    }
+
+    /// The same person, now one whom walls stop, as they always do someone who walks about: of a
+    /// step into a still obstacle only what leads along it is taken.
+    #[must_use]
+    pub fn stopped_by_walls(mut self) -> Self {
+        self.bodily = true;
+        self
+    }
+
+    /// Whether walls stop this person.
+    #[must_use]
+    pub fn is_stopped_by_walls(&self) -> bool {
+        self.bodily || matches!(self.motion, Motion::Walk { .. })
     }
 
     /// How the person moves.
@@ -130,6 +270,12 @@ impl Person {
         self.position
     }
 
+    /// Speed in the last step (m/s).
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
     pub(crate) fn solid(&self) -> &Solid {
         &self.solid
     }
@@ -138,20 +284,102 @@ impl Person {
     /// (s).
     pub(crate) fn place_at(&mut self, time: f64) {
         self.next = 0;
+        self.speed = 0.0;
+        self.stroll = None;
         self.position = match &self.motion {
             Motion::Line { start, .. } | Motion::Path { start, .. } => Some(*start),
+            Motion::Walk { start, seed, .. } => {
+                self.stroll = Some(Stroll::new(*seed));
+                Some(*start)
+            }
             Motion::Track(samples) => interpolate(samples, time),
         };
     }
 
-    /// Moves the person on by `dt` to `time` (s), past a robot at `robot`.
-    pub(crate) fn step(&mut self, time: f64, dt: f64, robot: &Footprint) {
-        let (Motion::Line { speed, delay, .. } | Motion::Path { speed, delay, .. }) = self.motion
-        else {
-            self.place_at(time);
+    /// Moves the person on by one step.
+    pub(crate) fn step(&mut self, now: &Moment<'_>) {
+        let before = self.position;
+        match self.motion {
+            Motion::Line { speed, delay, .. } | Motion::Path { speed, delay, .. } => {
+                self.follow(speed * (now.time - delay).clamp(0.0, now.dt), &now.robot);
+                if self.bodily
+                    && let (Some(before), Some(after)) = (before, self.position)
+                {
+                    self.position = Some(before + self.blocked(before, after - before, now));
+                }
+            }
+            Motion::Walk {
+                speed,
+                acceleration,
+                delay,
+                habit,
+                ..
+            } if now.time > delay => self.walk_about(habit, speed, acceleration * now.dt, now),
+            Motion::Walk { .. } => {}
+            Motion::Track(_) => self.place_at(now.time),
+        }
+        self.speed = match (before, self.position) {
+            (Some(before), Some(after)) => (after - before).norm() / now.dt,
+            _ => 0.0,
+        };
+    }
+
+    /// What walls and the robot leave of `step` (m) to someone whom they stop.
+    fn blocked(&self, position: Point, step: Vector, now: &Moment<'_>) -> Vector {
+        let slide = |step| now.walls.slide(position, step, self.radius);
+        let left = self.keep_off(position, slide(step), &now.robot);
+        // Between wall and robot there may be no way at all.
+        if slide(left) == left {
+            left
+        } else {
+            Vector::zeros()
+        }
+    }
+
+    /// What is left of `step` (m) for someone whom the robot's hull stops, or who keeps off it out
+    /// of courtesy: nothing leads nearer than that.
+    fn keep_off(&self, position: Point, step: Vector, robot: &Footprint) -> Vector {
+        let gap = match self.courtesy {
+            Some(gap) if robot.still => gap,
+            _ => -PRESS,
+        };
+        let offset = position - robot.centre;
+        // Who is nearer than that already comes no nearer.
+        let keep = (robot.radius + self.radius + gap).min(offset.norm());
+        let after = offset + step;
+        if after.norm() >= keep {
+            return step;
+        }
+        let outward = after.try_normalize(1e-9).unwrap_or_else(Vector::x);
+        let left = outward * keep - offset;
+        left * (step.norm() / left.norm()).min(1.0)
+    }
+
+    /// A step of someone who walks about and can change their velocity by no more than `change`
+    /// (m/s) in it.
+    fn walk_about(&mut self, habit: Habit, speed: f64, change: f64, now: &Moment<'_>) {
+        let (Some(position), Some(mut stroll)) = (self.position, self.stroll.take()) else {
             return;
         };
-        let mut budget = speed * (time - delay).clamp(0.0, dt);
+        let offset = position - now.robot.centre;
+        let there = matches!(stroll.leg, Leg::Robot(_))
+            && offset.norm() <= now.robot.radius + self.radius + self.courtesy.unwrap_or(0.0);
+        if now.time > stroll.until || there {
+            stroll.choose(habit, now.time, offset, speed);
+        }
+        // Between two velocities that are both slow enough lie none that are not.
+        let difference = stroll.wanted(offset) - stroll.velocity;
+        let part = (change / difference.norm().max(change)).min(1.0);
+        stroll.velocity += difference * part;
+        let step = self.blocked(position, stroll.velocity * now.dt, now);
+        stroll.velocity = step / now.dt;
+        self.position = Some(position + step);
+        self.stroll = Some(stroll);
+    }
+
+    /// Walks on by `budget` (m) along a line or a path.
+    fn follow(&mut self, budget: f64, robot: &Footprint) {
+        let mut budget = budget;
         let Some(mut position) = self.position else {
             return;
         };
@@ -193,7 +421,7 @@ impl Person {
     fn waypoints(&self) -> &[Point] {
         match &self.motion {
             Motion::Path { waypoints, .. } => waypoints,
-            Motion::Line { .. } | Motion::Track(_) => &[],
+            Motion::Line { .. } | Motion::Walk { .. } | Motion::Track(_) => &[],
         }
     }
 
@@ -211,7 +439,7 @@ impl Person {
                 };
                 waypoints.get(next).map(|waypoint| waypoint - position)
             }
-            Motion::Track(_) => None,
+            Motion::Walk { .. } | Motion::Track(_) => None,
         }
     }
 
@@ -277,6 +505,21 @@ fn check(motion: &Motion) -> Result<(), Error> {
             for waypoint in waypoints {
                 check_place("person.waypoint", waypoint)?;
             }
+        }
+        Motion::Walk {
+            start,
+            speed,
+            acceleration,
+            delay,
+            ..
+        } => {
+            check_walk(start, *speed, *delay)?;
+            require(
+                "person.acceleration",
+                *acceleration,
+                "> 0, <= 1000 m/s²",
+                |a| a > 0.0 && a <= 1000.0,
+            )?;
         }
         Motion::Track(samples) => {
             let mut last = f64::NEG_INFINITY;

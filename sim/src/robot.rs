@@ -243,6 +243,17 @@ impl ArcosRobot {
         &self.base
     }
 
+    /// The drive, to give it faults.
+    pub fn base_mut(&mut self) -> &mut Base {
+        &mut self.base
+    }
+
+    /// The sonars.
+    #[must_use]
+    pub fn ring(&self) -> &Ring {
+        &self.ring
+    }
+
     /// The sonars, to give them faults.
     pub fn ring_mut(&mut self) -> &mut Ring {
         &mut self.ring

@@ -11,17 +11,21 @@ use crate::eth;
 use crate::geometry::{Point, Pose, Vector, direction, heading_of};
 use crate::person::{COURTESY_GAP, Motion, Person};
 use crate::robot::{self, ArcosRobot};
-use crate::simulation::Simulation;
+use crate::simulation::{Sample, Simulation};
 use crate::sonar;
 use crate::world::World;
 
 /// The scenarios that need no data file.
-pub const NAMES: [&str; 5] = [
+pub const NAMES: [&str; 9] = [
     ENCOUNTERS[0].name,
     ENCOUNTERS[1].name,
     ENCOUNTERS[2].name,
     ENCOUNTERS[3].name,
     LAB,
+    CORRIDOR,
+    CORRIDOR_WALKER,
+    EMPTY_ROOM,
+    BLOCKED_WAY,
 ];
 
 /// Someone who walks straight on towards where the robot is going to be.
@@ -64,6 +68,10 @@ const ENCOUNTERS: [Encounter; 4] = [
 ];
 
 const LAB: &str = "lab";
+const CORRIDOR: &str = "corridor";
+const CORRIDOR_WALKER: &str = "corridor-walker";
+const EMPTY_ROOM: &str = "empty-room";
+const BLOCKED_WAY: &str = "blocked-way";
 
 /// The robot's speed on the way to its goal, for which the encounters are timed (m/s): S1 L294.
 pub const CRUISE: f64 = 0.2;
@@ -129,8 +137,13 @@ pub struct Scenario {
 impl Scenario {
     /// The scenario called `name`, one of [`NAMES`].
     pub fn named(name: &str, knobs: &Knobs) -> Result<Self, Error> {
-        if name == LAB {
-            return lab(knobs);
+        match name {
+            LAB => return lab(knobs),
+            CORRIDOR => return corridor(knobs, false),
+            CORRIDOR_WALKER => return corridor(knobs, true),
+            EMPTY_ROOM => return empty_room(knobs),
+            BLOCKED_WAY => return blocked_way(knobs),
+            _ => {}
         }
         match ENCOUNTERS.iter().find(|encounter| encounter.name == name) {
             Some(encounter) => encounter.scenario(knobs),
@@ -181,9 +194,11 @@ impl Scenario {
     ///
     /// - Someone who walks straight on comes from about the same direction (±20°), at a speed up to
     ///   `speed_limit` in (0, 5] (m/s), and aims within 0.5 m of where the robot would be by then.
-    ///   Nobody starts right beside the robot.
+    ///   Nobody starts right beside the robot. Someone whom walls stop keeps to their line, and
+    ///   changes only the speed.
     /// - Someone who walks from waypoint to waypoint does so at another such speed and after
     ///   another delay, on patrol beginning at any of the waypoints.
+    /// - Someone who walks about does so up to `speed_limit`, and otherwise chooses.
     /// - Recorded people stay as they were recorded.
     pub fn randomised(mut self, seed: u64, speed_limit: f64) -> Result<Self, Error> {
         require("scenario.speed_limit", speed_limit, "> 0, <= 5 m/s", |v| {
@@ -198,6 +213,18 @@ impl Scenario {
         let keep = self.robot.base.radius + INITIAL_CLEARANCE;
         for person in self.world.people_mut() {
             let motion = match person.motion().clone() {
+                // Who is to stay between walls stays on the way that leads there.
+                Motion::Line {
+                    start,
+                    heading,
+                    delay,
+                    ..
+                } if person.is_stopped_by_walls() => Motion::Line {
+                    start,
+                    heading,
+                    speed: speed_limit * rng.random_range(0.25..=1.0),
+                    delay,
+                },
                 Motion::Line { heading, .. } => {
                     let speed = speed_limit * rng.random_range(0.25..=1.0);
                     let heading = heading + rng.random_range(-20.0..=20.0_f64).to_radians();
@@ -237,6 +264,20 @@ impl Scenario {
                         patrol,
                     }
                 }
+                Motion::Walk {
+                    start,
+                    acceleration,
+                    delay,
+                    habit,
+                    ..
+                } => Motion::Walk {
+                    start,
+                    speed: speed_limit,
+                    acceleration,
+                    delay,
+                    habit,
+                    seed: rng.random(),
+                },
                 track @ Motion::Track(_) => track,
             };
             *person = person.clone().with_motion(motion)?;
@@ -244,6 +285,20 @@ impl Scenario {
         let time = self.world.time();
         self.world = self.world.starting_at(time)?;
         Ok(self)
+    }
+
+    /// When the last of the people left the robot's way (ms): from then on nobody came within
+    /// [`FREE`] of the straight line from where the robot was to the goal. Nothing if nobody was ever
+    /// in the way, or if somebody was to the end of `trace`.
+    #[must_use]
+    pub fn way_free_ms(&self, trace: &[Sample]) -> Option<u64> {
+        let barred = |sample: &Sample| {
+            let robot = sample.pose.position;
+            let mut people = sample.people.iter();
+            people.any(|(_, place)| from_segment(*place, robot, self.goal) < FREE)
+        };
+        let last = trace.iter().rposition(barred)?;
+        trace.get(last + 1).map(|sample| sample.time_ms)
     }
 
     /// The situation at its beginning.
@@ -319,6 +374,136 @@ fn lab(knobs: &Knobs) -> Result<Scenario, Error> {
         sonar_faults: knobs.sonar_faults,
         seed: knobs.seed,
     })
+}
+
+/// A straight corridor 1.2 m wide and 10 m long, with open ends, which the robot drives from near
+/// one end to near the other; with someone who comes along it the other way, if asked for, from where
+/// the seed has it.
+fn corridor(knobs: &Knobs, walker: bool) -> Result<Scenario, Error> {
+    let mut world = World::new();
+    for y in [-0.6, 0.6] {
+        world.add_wall(Point::new(0.0, y), Point::new(10.0, y))?;
+    }
+    let speed = knobs.person_speed.unwrap_or(0.8);
+    if walker {
+        let mut rng = ChaCha8Rng::seed_from_u64(knobs.seed);
+        rng.set_stream(u64::MAX - 1);
+        let line = Motion::Line {
+            start: Point::new(rng.random_range(5.0..=9.0), rng.random_range(-0.2..=0.2)),
+            heading: PI,
+            speed,
+            delay: 0.0,
+        };
+        world.add_person(someone(line, knobs)?.stopped_by_walls());
+    }
+    let (name, description) = if walker {
+        let description =
+            format!("a 1.2 m wide corridor, and someone coming along it at {speed} m/s");
+        (CORRIDOR_WALKER, description)
+    } else {
+        let description = "10 m along a 1.2 m wide corridor of still walls";
+        (CORRIDOR, description.to_owned())
+    };
+    Ok(Scenario {
+        name,
+        description,
+        world,
+        start: Pose::new(0.5, 0.0, 0.0),
+        goal: Point::new(9.5, 0.0),
+        time_limit_ms: 150_000,
+        robot: robot_with(knobs),
+        sonar_faults: knobs.sonar_faults,
+        seed: knobs.seed,
+    })
+}
+
+/// A room with nothing within 3 m of the straight way to the goal.
+fn empty_room(knobs: &Knobs) -> Result<Scenario, Error> {
+    let mut world = World::new();
+    world.add_room(Point::new(-3.2, -3.2), Point::new(7.2, 3.2))?;
+    Ok(Scenario {
+        name: EMPTY_ROOM,
+        description: "4 m straight ahead in an empty room".to_owned(),
+        world,
+        start: Pose::new(0.0, 0.0, 0.0),
+        goal: Point::new(4.0, 0.0),
+        time_limit_ms: 60_000,
+        robot: robot_with(knobs),
+        sonar_faults: knobs.sonar_faults,
+        seed: knobs.seed,
+    })
+}
+
+/// How far from the robot's straight way to the goal someone must be for it to be free (m).
+pub const FREE: f64 = 1.2;
+
+/// Someone who stands in the robot's way where there is not much room, as the seed has it, and goes
+/// away after some seconds: in a passage between two boxes, or beside a wall right before the robot.
+/// When they have left is [`Scenario::way_free_ms`].
+fn blocked_way(knobs: &Knobs) -> Result<Scenario, Error> {
+    let mut rng = ChaCha8Rng::seed_from_u64(knobs.seed);
+    rng.set_stream(u64::MAX - 1);
+    let mut world = World::new();
+    let goal = Point::new(4.0, 0.0);
+    let passage = rng.random_bool(0.5);
+    let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    let (start, waypoints) = if passage {
+        // Wide enough for the robot, not for robot and person side by side.
+        let (width, length) = (rng.random_range(1.6..=2.2), rng.random_range(1.0..=2.0));
+        for side in [-1.0, 1.0] {
+            let middle = Pose::new(2.0, side * (width / 2.0 + 0.3), 0.0);
+            world.add_box(middle, length, 0.6)?;
+        }
+        // On through the passage and away, not back over the robot.
+        let stands = Point::new(rng.random_range(1.0..=2.0), rng.random_range(-0.3..=0.3));
+        let beyond = Point::new(3.6, 0.0);
+        (stands, vec![beyond, Point::new(3.6, side * 6.0)])
+    } else {
+        let wall = -side * rng.random_range(0.8..=1.4);
+        world.add_wall(Point::new(-2.0, wall), Point::new(6.0, wall))?;
+        let stands = Point::new(rng.random_range(0.7..=1.6), rng.random_range(-0.3..=0.3));
+        (stands, vec![Point::new(stands.x + 0.5, side * 6.0)])
+    };
+    let speed = knobs
+        .person_speed
+        .unwrap_or_else(|| rng.random_range(0.3..=0.8));
+    let delay = rng.random_range(10.0..=16.0);
+    let stands = Motion::Path {
+        start,
+        waypoints,
+        speed,
+        delay,
+        patrol: false,
+    };
+    world.add_person(someone(stands, knobs)?.stopped_by_walls());
+    let place = if passage {
+        "in a passage"
+    } else {
+        "beside a wall"
+    };
+    Ok(Scenario {
+        name: BLOCKED_WAY,
+        description: format!("someone stands in the way {place} for {delay:.0} s, then leaves"),
+        world,
+        start: Pose::new(0.0, 0.0, 0.0),
+        goal,
+        time_limit_ms: 60_000,
+        robot: robot_with(knobs),
+        sonar_faults: knobs.sonar_faults,
+        seed: knobs.seed,
+    })
+}
+
+/// Distance of `place` from the segment between two points (m).
+fn from_segment(place: Point, from: Point, to: Point) -> f64 {
+    let along = to - from;
+    let length = along.norm_squared();
+    let part = if length > 0.0 {
+        ((place - from).dot(&along) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (place - (from + along * part)).norm()
 }
 
 fn someone(motion: Motion, knobs: &Knobs) -> Result<Person, Error> {

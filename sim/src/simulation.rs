@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::STEP_MS;
 use crate::base::Activity;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, heading_of, wrap};
+use crate::person::Person;
 use crate::robot::ArcosRobot;
+use crate::truth::Truth;
 use crate::world::{Body, World};
 
 /// Time between two samples of the trace (ms).
@@ -68,6 +70,27 @@ pub struct Outcome {
     pub contacts_at_rest: ByKind<u32>,
 }
 
+/// The moment at which a contact became one that was never to happen: a body was touched by a robot
+/// that moved, or a robot moved that was being touched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingContact {
+    /// When (ms).
+    pub time_ms: u64,
+    /// What was touched.
+    pub body: Body,
+    /// What the robot did.
+    pub activity: Activity,
+    /// Direction of the body's nearest point, or of the middle of a person, from the robot's heading
+    /// (rad).
+    pub bearing: f64,
+    /// The robot's speed, forward positive (m/s).
+    pub speed: f64,
+    /// The person's speed (m/s); 0 for an obstacle.
+    pub body_speed: f64,
+    /// Whether they had been in touch before, with the robot at rest.
+    pub touched_before: bool,
+}
+
 /// A world with a robot in it.
 #[derive(Clone)]
 pub struct Simulation {
@@ -80,6 +103,8 @@ pub struct Simulation {
     touching: BTreeMap<Body, Activity>,
     /// Contacts that have ended.
     ended: BTreeMap<Activity, ByKind<u32>>,
+    moving_contacts: Vec<MovingContact>,
+    truth: Truth,
 }
 
 impl Simulation {
@@ -97,6 +122,8 @@ impl Simulation {
             },
             touching: BTreeMap::new(),
             ended: BTreeMap::new(),
+            moving_contacts: Vec::new(),
+            truth: Truth::default(),
         };
         simulation.judge();
         simulation.sample();
@@ -109,6 +136,7 @@ impl Simulation {
             self.now_ms += STEP_MS;
             self.world.step(&self.robot.base().footprint());
             self.robot.step(&self.world);
+            self.truth.note(&self.world, &self.robot);
             self.judge();
             if self.now_ms.is_multiple_of(SAMPLE_MS) {
                 self.sample();
@@ -151,6 +179,23 @@ impl Simulation {
     #[must_use]
     pub fn trace(&self) -> &[Sample] {
         &self.trace
+    }
+
+    /// What was truly so, beside what a shield assumes.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// The same, for whoever carries the packets to note how long they took.
+    pub fn truth_mut(&mut self) -> &mut Truth {
+        &mut self.truth
+    }
+
+    /// How each contact with a robot that moved came about.
+    #[must_use]
+    pub fn moving_contacts(&self) -> &[MovingContact] {
+        &self.moving_contacts
     }
 
     /// What became of it so far.
@@ -198,9 +243,36 @@ impl Simulation {
             lasts
         });
         for body in touched {
-            let worst = self.touching.entry(body).or_insert(activity);
-            *worst = activity.max(*worst);
+            let before = self.touching.get(&body).copied();
+            let worst = before.map_or(activity, |before| before.max(activity));
+            self.touching.insert(body, worst);
+            if activity > Activity::Resting && before.is_none_or(|b| b == Activity::Resting) {
+                self.moving_contacts.push(MovingContact {
+                    time_ms: self.now_ms,
+                    body,
+                    activity,
+                    bearing: self.bearing(body),
+                    speed: self.robot.base().speed(),
+                    body_speed: match body {
+                        Body::Person(i) => self.world.people().get(i).map_or(0.0, Person::speed),
+                        Body::Obstacle(_) => 0.0,
+                    },
+                    touched_before: before.is_some(),
+                });
+            }
         }
+    }
+
+    /// Direction of `body` from the robot's heading (rad).
+    fn bearing(&self, body: Body) -> f64 {
+        let pose = self.robot.base().pose();
+        let place = match body {
+            Body::Person(i) => self.world.people().get(i).and_then(Person::position),
+            Body::Obstacle(i) => self.world.nearest_point(i, pose.position),
+        };
+        place.map_or(0.0, |place| {
+            wrap(heading_of(&(place - pose.position)) - pose.heading)
+        })
     }
 
     fn sample(&mut self) {

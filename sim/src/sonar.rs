@@ -171,6 +171,12 @@ impl Ring {
         }
     }
 
+    /// The sonars that are broken for good, by index.
+    pub fn broken(&self) -> impl Iterator<Item = usize> {
+        let sonars = self.sonars.iter().enumerate();
+        sonars.filter_map(|(index, sonar)| sonar.faults.failure.map(|_| index))
+    }
+
     /// What sonar `index` listens to on a robot at `robot`, if there is such a sonar.
     #[must_use]
     pub fn cone(&self, index: usize, robot: &Pose) -> Option<Cone> {

@@ -10,7 +10,7 @@ use parry2d::shape::{Ball, Cuboid, Segment, SharedShape};
 use crate::STEP;
 use crate::error::{Error, require};
 use crate::geometry::{Point, Pose, Vector, direction, heading_of};
-use crate::person::Person;
+use crate::person::{Moment, Person};
 
 /// Outline of a still obstacle, in world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +64,14 @@ impl Solid {
         let pose = Isometry::from_parts(single(offset), self.rotation);
         f64::from(self.convex.distance_to_point(&pose, Vec2::ZERO, true))
     }
+
+    /// From a point to the nearest one of the body, zero inside, when the centre lies at `offset`
+    /// from the point (m).
+    fn nearest(&self, offset: Vector) -> Vector {
+        let pose = Isometry::from_parts(single(offset), self.rotation);
+        let nearest = self.convex.project_point(&pose, Vec2::ZERO, true).point;
+        Vector::new(f64::from(nearest.x), f64::from(nearest.y))
+    }
 }
 
 /// A still obstacle.
@@ -73,6 +81,56 @@ struct Obstacle {
     centre: Point,
     solid: Solid,
 }
+
+/// What stops people: the still obstacles.
+#[derive(Clone, Copy)]
+pub(crate) struct Walls<'a>(&'a [Obstacle]);
+
+impl Walls<'_> {
+    /// What is left of `step` (m) for a disc at `position`: what leads into an obstacle is taken
+    /// away, what leads along it stays. Never longer than `step`.
+    pub(crate) fn slide(self, position: Point, step: Vector, radius: f64) -> Vector {
+        let Some((outward, depth)) = self.deepest(position + step, radius) else {
+            return step;
+        };
+        let inward = -step.dot(&outward);
+        let slid = step + outward * inward.clamp(0.0, depth);
+        // Between two of them there may be no way at all.
+        match self.deepest(position + slid, radius) {
+            Some((_, left)) if left > TOLERANCE && left >= self.depth(position, radius) => {
+                Vector::zeros()
+            }
+            _ => slid,
+        }
+    }
+
+    fn depth(self, centre: Point, radius: f64) -> f64 {
+        self.deepest(centre, radius).map_or(0.0, |(_, depth)| depth)
+    }
+
+    /// How deep a disc reaches into an obstacle (m), where it does most, and the direction out.
+    fn deepest(self, centre: Point, radius: f64) -> Option<(Vector, f64)> {
+        let mut deepest: Option<(Vector, f64)> = None;
+        for obstacle in self.0 {
+            let offset = obstacle.centre - centre;
+            if offset.norm() >= radius + obstacle.solid.bound {
+                continue;
+            }
+            let inward = obstacle.solid.nearest(offset);
+            let depth = radius - inward.norm();
+            if depth > 0.0
+                && deepest.is_none_or(|(_, most)| depth > most)
+                && let Some(inward) = inward.try_normalize(1e-6)
+            {
+                deepest = Some((-inward, depth));
+            }
+        }
+        deepest
+    }
+}
+
+/// What single precision makes of a touch (m).
+const TOLERANCE: f64 = 1e-5;
 
 /// Something that can be hit: the index says which one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -235,8 +293,14 @@ impl World {
     /// Moves the people on by one step, past a robot at `robot`.
     pub fn step(&mut self, robot: &Footprint) {
         self.time += STEP;
+        let now = Moment {
+            time: self.time,
+            dt: STEP,
+            robot: *robot,
+            walls: Walls(&self.obstacles),
+        };
         for person in &mut self.people {
-            person.step(self.time, STEP, robot);
+            person.step(&now);
         }
     }
 
@@ -256,6 +320,13 @@ impl World {
     #[must_use]
     pub fn nearest_obstacle(&self, point: Point) -> Option<Nearest> {
         nearest_to(point, self.still())
+    }
+
+    /// The point of obstacle `index` that is nearest to `from` (m), if there is such an obstacle.
+    #[must_use]
+    pub fn nearest_point(&self, index: usize, from: Point) -> Option<Point> {
+        let obstacle = self.obstacles.get(index)?;
+        Some(from + obstacle.solid.nearest(obstacle.centre - from))
     }
 
     /// Distance from the hull of a disc at `centre` to the nearest body (m): negative where they

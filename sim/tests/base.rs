@@ -4,7 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use sidestep_sim::base::{Activity, Base, Limits, Order, Parameters};
+use sidestep_sim::base::{Activity, Base, Effort, Faults, Limits, Order, Parameters};
 use sidestep_sim::geometry::{Point, Pose};
 use sidestep_sim::{STEP, World};
 
@@ -295,4 +295,51 @@ fn what_cannot_be_is_refused_or_ignored() {
     base.order(Order::Heading(f64::INFINITY));
     run(&mut base, 1.0);
     assert_eq!(base.pose(), Pose::new(0.0, 0.0, 0.0));
+}
+
+#[test]
+fn a_faulty_drive_brakes_and_speeds_up_by_its_share() {
+    for (braking_share, acceleration_share) in [(0.5, 1.0), (0.2, 2.0), (1.5, 0.7)] {
+        let mut base = base(prompt());
+        let faults = Faults {
+            braking_share,
+            acceleration_share,
+        };
+        base.set_faults(faults).unwrap();
+        assert_eq!(base.effort(), Effort::default());
+        let (speed, set) = (0.4, *base.limits());
+        base.order(Order::Speed(speed));
+        run(&mut base, 0.5);
+        let acceleration = set.acceleration * acceleration_share;
+        assert_eq!(base.effort().accelerating, Some(acceleration));
+        assert!((base.speed() - (acceleration * 0.5).min(speed)).abs() < 1e-9);
+        run(&mut base, 5.0);
+        assert_eq!(base.effort(), Effort::default());
+        let from = base.pose().position.x;
+        base.order(Order::Stop);
+        run(&mut base, 0.1);
+        let braking = set.deceleration * braking_share;
+        assert_eq!(base.effort().braking, Some(braking));
+        run(&mut base, 20.0);
+        let way = base.pose().position.x - from;
+        assert!(
+            (way - speed * speed / (2.0 * braking)).abs() < 1e-9,
+            "{way}"
+        );
+    }
+    let mut base = base(prompt());
+    for share in [0.0, -1.0, 11.0, f64::NAN] {
+        for faults in [
+            Faults {
+                braking_share: share,
+                ..Faults::default()
+            },
+            Faults {
+                acceleration_share: share,
+                ..Faults::default()
+            },
+        ] {
+            assert!(base.set_faults(faults).is_err());
+        }
+    }
 }

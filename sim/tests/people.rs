@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 
 use sidestep_sim::STEP;
-use sidestep_sim::geometry::Point;
-use sidestep_sim::person::{Motion, Person, Sample};
+use sidestep_sim::geometry::{Point, Vector};
+use sidestep_sim::person::{Habit, Motion, Person, Sample};
 use sidestep_sim::world::{Footprint, World};
 
 const ROBOT: Footprint = Footprint {
@@ -216,4 +216,120 @@ fn a_path_without_length_does_not_hang() {
         world.step(&FAR);
         assert_eq!(position(&world), here);
     }
+}
+
+fn walk(habit: Habit, speed: f64, acceleration: f64, seed: u64) -> Motion {
+    Motion::Walk {
+        start: Point::new(2.0, 1.0),
+        speed,
+        acceleration,
+        delay: 0.5,
+        habit,
+        seed,
+    }
+}
+
+#[test]
+fn those_who_walk_about_keep_their_speed_and_acceleration() {
+    for habit in [Habit::Wander, Habit::Charge] {
+        for seed in 0..20 {
+            let (speed, acceleration) = (0.8, 1.5);
+            let mut world =
+                world_with(Person::new(walk(habit, speed, acceleration, seed)).unwrap());
+            let (mut fastest, mut before) = (0.0_f64, (position(&world), Vector::zeros()));
+            for step in 0..2000 {
+                // Far away: its hull stops nobody.
+                world.step(&FAR);
+                let velocity = (position(&world) - before.0) / STEP;
+                let change = (velocity - before.1).norm() / STEP;
+                assert!(velocity.norm() <= speed + 1e-9, "{habit:?} {seed}");
+                assert!(change <= acceleration + 1e-6, "{habit:?} {seed}: {change}");
+                assert!((world.people()[0].speed() - velocity.norm()).abs() < 1e-9);
+                assert!(step >= 49 || velocity.norm() == 0.0, "before the delay");
+                fastest = fastest.max(velocity.norm());
+                before = (position(&world), velocity);
+            }
+            assert!(fastest > 0.5 * speed, "{habit:?} {seed}: {fastest}");
+        }
+    }
+}
+
+#[test]
+fn who_charges_reaches_the_robot_and_comes_again() {
+    for seed in 0..20 {
+        let mut world = world_with(Person::new(walk(Habit::Charge, 0.8, 2.0, seed)).unwrap());
+        let (mut touches, mut touching) = (0, false);
+        for _ in 0..6000 {
+            world.step(&ROBOT);
+            let distance = (position(&world) - ROBOT.centre).norm();
+            // The hull stops them.
+            assert!(distance > 0.3 + 0.25 - 0.01, "{distance}");
+            let touches_now = distance <= 0.3 + 0.25;
+            touches += u32::from(touches_now && !touching);
+            touching = touches_now;
+        }
+        assert!(touches >= 3, "seed {seed}: {touches} touches in a minute");
+    }
+}
+
+#[test]
+fn the_courteous_who_charge_keep_their_gap() {
+    let person = Person::new(walk(Habit::Charge, 0.8, 2.0, 3)).unwrap();
+    let mut world = world_with(person.courteous(0.15).unwrap());
+    let mut nearest = f64::INFINITY;
+    for _ in 0..6000 {
+        world.step(&ROBOT);
+        nearest = nearest.min((position(&world) - ROBOT.centre).norm());
+    }
+    assert!((nearest - 0.7).abs() < 0.01, "{nearest}");
+}
+
+#[test]
+fn walls_stop_those_who_have_a_body() {
+    let room = |person: Person| {
+        let mut world = world_with(person);
+        let low = Point::new(-1.0, -1.0);
+        world.add_room(low, Point::new(3.0, 2.0)).unwrap();
+        world.add_disc(Point::new(1.0, -0.4), 0.2).unwrap();
+        world
+    };
+    let deepest = |mut world: World| {
+        let mut least = f64::INFINITY;
+        for _ in 0..3000 {
+            world.step(&FAR);
+            let obstacle = world.nearest_obstacle(position(&world)).unwrap();
+            least = least.min(obstacle.distance - world.people()[0].radius());
+        }
+        least
+    };
+    for seed in 0..30 {
+        let person = Person::new(walk(Habit::Wander, 1.5, 1000.0, seed)).unwrap();
+        let least = deepest(room(person));
+        assert!(least > -1e-3, "seed {seed}: {least} m deep");
+    }
+    let into_the_wall = Person::new(line(0.0, 0.0, 0.3, 1.0)).unwrap();
+    assert!(deepest(room(into_the_wall.clone())) < -0.2);
+    let stopped = into_the_wall.stopped_by_walls();
+    assert!(deepest(room(stopped)) > -1e-3);
+}
+
+#[test]
+fn the_same_seed_walks_the_same_way() {
+    let end = |seed| {
+        let mut world = world_with(Person::new(walk(Habit::Wander, 0.8, 1.0, seed)).unwrap());
+        for _ in 0..1000 {
+            world.step(&ROBOT);
+        }
+        position(&world)
+    };
+    assert_eq!(end(1), end(1));
+    assert_ne!(end(1), end(2));
+}
+
+#[test]
+fn no_walk_without_acceleration() {
+    for acceleration in [0.0, -1.0, 1001.0, f64::NAN] {
+        assert!(Person::new(walk(Habit::Wander, 0.8, acceleration, 0)).is_err());
+    }
+    assert!(Person::new(walk(Habit::Wander, 5.1, 1.0, 0)).is_err());
 }

@@ -266,3 +266,73 @@ fn unknown_names_and_bad_knobs_are_refused() {
     assert!(Scenario::named("lab", &knobs).unwrap().simulate().is_err());
     assert!(named("lab").randomised(0, 0.0).is_err());
 }
+
+#[test]
+fn an_empty_room_is_empty() {
+    let scenario = named("empty-room");
+    let way = scenario.goal - scenario.start.position;
+    assert!((way.norm() - 4.0).abs() < 1e-9);
+    for part in 0..=40 {
+        let place = scenario.start.position + way * (f64::from(part) / 40.0);
+        assert!(scenario.world.nearest(place).unwrap().distance >= 3.0);
+    }
+}
+
+#[test]
+fn a_corridor_is_as_narrow_as_it_says() {
+    for name in ["corridor", "corridor-walker"] {
+        let scenario = named(name);
+        for x in 0..=10 {
+            let place = Point::new(f64::from(x), 0.0);
+            let wall = scenario.world.nearest_obstacle(place).unwrap();
+            assert!((wall.distance - 0.6).abs() < 1e-6);
+        }
+        // Somebody who walks it stays between the walls, and does not touch who stands, or does.
+        for courteous in [true, false] {
+            let knobs = Knobs {
+                courteous,
+                ..Knobs::default()
+            };
+            let mut simulation = Scenario::named(name, &knobs).unwrap().simulate().unwrap();
+            simulation.advance_to(20_000);
+            for (_, place) in simulation.trace().iter().flat_map(|sample| &sample.people) {
+                assert!(place.y.abs() <= 0.6 - 0.25 + 1e-3, "{place}");
+            }
+            let touched = simulation.outcome().contacts_at_rest.people;
+            let someone = name == "corridor-walker";
+            assert_eq!(touched, u32::from(someone && !courteous), "{name}");
+        }
+    }
+}
+
+#[test]
+fn who_blocks_the_way_leaves_it() {
+    let mut frees = Vec::new();
+    for seed in 0..100 {
+        let knobs = Knobs {
+            seed,
+            ..Knobs::default()
+        };
+        let scenario = Scenario::named("blocked-way", &knobs).unwrap();
+        let mut simulation = scenario.simulate().unwrap();
+        simulation.advance_to(scenario.time_limit_ms);
+        let trace = simulation.trace();
+        let free = scenario.way_free_ms(trace).expect("they leave");
+        assert!((10_000..40_000).contains(&free), "seed {seed}: {free}");
+        frees.push(free);
+        // Nobody has left as long as they are there.
+        let before = trace.iter().position(|s| s.time_ms == free).unwrap();
+        assert_eq!(scenario.way_free_ms(&trace[..before]), None);
+        // A robot that drives on meets them.
+        let mut blind = scenario.simulate().unwrap();
+        drive(&mut blind, 12_000);
+        let touched = blind.outcome().contacts_while_driving.people;
+        assert!(touched > 0, "seed {seed}: nobody is in the way");
+    }
+    frees.dedup();
+    assert!(frees.len() > 50);
+    let nobody = named("corridor");
+    let mut simulation = nobody.simulate().unwrap();
+    simulation.advance_to(1000);
+    assert_eq!(nobody.way_free_ms(simulation.trace()), None);
+}
