@@ -18,8 +18,16 @@ pub struct Field {
     pub min: f32,
     /// Greatest allowed value.
     pub max: f32,
+    /// It is a count.
+    pub whole: bool,
     /// What it means and where it comes from.
     pub meaning: &'static str,
+}
+
+/// The unit is that of a count.
+const fn is_count(unit: &str) -> bool {
+    // Strings cannot be compared in a constant; no other unit is as long.
+    unit.len() == "samples".len()
 }
 
 macro_rules! parameters {
@@ -33,13 +41,13 @@ macro_rules! parameters {
 
         /// The description of every parameter, in the order of [`Parameters::values`].
         pub const FIELDS: [Field; [$(stringify!($name)),+].len()] = [
-            $(Field { name: stringify!($name), unit: $unit, min: $min, max: $max, meaning: $meaning },)+
+            $(Field { name: stringify!($name), unit: $unit, min: $min, max: $max, whole: is_count($unit), meaning: $meaning },)+
         ];
 
         impl Parameters {
             /// The values in the order of [`FIELDS`].
             #[must_use]
-            pub fn values(&self) -> [f32; FIELDS.len()] {
+            pub const fn values(&self) -> [f32; FIELDS.len()] {
                 [$(self.$name),+]
             }
 
@@ -130,6 +138,15 @@ parameters! {
         "Readings from here on mean that no echo came back.";
 }
 
+/// Goes on only with what is in range.
+macro_rules! check {
+    ($checked:expr) => {
+        if let Err(error) = $checked {
+            return Err(error);
+        }
+    };
+}
+
 /// Parameters that were checked. See [`Config::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -150,11 +167,17 @@ impl Config {
     /// # Errors
     /// The first parameter that is out of range; where the range depends on another parameter
     /// (d_min < d_n < d_safe, for example) the range given is the one that follows from it.
-    pub fn new(parameters: Parameters) -> Result<Self, OutOfRange> {
-        for (field, value) in FIELDS.iter().zip(parameters.values()) {
-            let in_range = in_range(field.name, value, field.min, field.max, field.unit)?;
+    pub const fn new(parameters: Parameters) -> Result<Self, OutOfRange> {
+        let values = parameters.values();
+        let mut i = 0;
+        while i < FIELDS.len() {
+            let field = &FIELDS[i];
+            let value = values[i];
+            check!(in_range(
+                field.name, value, field.min, field.max, field.unit
+            ));
             // A count is whole: the range of a count starts at 1, so the cast is exact.
-            if field.unit == "samples" && in_range != (in_range as u16) as f32 {
+            if field.whole && value != (value as u16) as f32 {
                 return Err(OutOfRange {
                     field: field.name,
                     value,
@@ -163,54 +186,61 @@ impl Config {
                     unit: "samples (whole)",
                 });
             }
+            i += 1;
         }
         let p = parameters;
         // Δθ = (π/2)·k/d must stay within half a turn wherever the shield lets the robot move.
-        in_range(
+        check!(in_range(
             "turn_distance",
             p.turn_distance,
             0.01,
             2.0 * p.min_distance,
             "m",
-        )?;
-        in_range(
+        ));
+        check!(in_range(
             "near_distance",
             p.near_distance,
             p.min_distance,
             p.safe_distance,
             "m",
-        )?;
-        in_range(
+        ));
+        check!(in_range(
             "safe_distance",
             p.safe_distance,
             p.near_distance,
             p.sonar_range_max,
             "m",
-        )?;
-        in_range("cruise_speed", p.cruise_speed, 0.01, p.speed_max, "m/s")?;
+        ));
+        check!(in_range(
+            "cruise_speed",
+            p.cruise_speed,
+            0.01,
+            p.speed_max,
+            "m/s"
+        ));
         // However weak the brakes, the sums of the shield stay inside their integers.
-        in_range(
+        check!(in_range(
             "braking_share",
             p.braking_share,
             0.1 / p.braking,
             1.0,
-            "share",
-        )?;
+            "share"
+        ));
         // What is still is not faster than what may be anything.
-        in_range(
+        check!(in_range(
             "still_speed_max",
             p.still_speed_max,
             0.0,
             p.obstacle_speed_max,
             "m/s",
-        )?;
-        in_range(
+        ));
+        check!(in_range(
             "min_distance",
             p.min_distance,
             p.sonar_range_min,
             p.near_distance,
             "m",
-        )?;
+        ));
         Ok(Self { parameters })
     }
 

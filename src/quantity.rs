@@ -42,7 +42,7 @@ impl core::error::Error for OutOfRange {}
 ///
 /// # Errors
 /// [`OutOfRange`] naming the field, the value and the range; NaN is always out of range.
-pub fn in_range(
+pub const fn in_range(
     field: &'static str,
     value: f32,
     min: f32,

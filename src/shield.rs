@@ -56,14 +56,14 @@ impl Command {
 
 /// A length in whole millimetres, rounded down. Saturates; NaN is 0.
 #[must_use]
-pub(crate) fn millimetres_down(metres: f32) -> i32 {
+pub(crate) const fn millimetres_down(metres: f32) -> i32 {
     // The cast truncates, which rounds down for the lengths of 0 m and more that come here.
     (metres * 1000.0) as i32
 }
 
 /// A length or speed in whole millimetres, rounded up. Saturates; NaN is 0.
 #[must_use]
-pub(crate) fn millimetres_up(metres: f32) -> i32 {
+pub(crate) const fn millimetres_up(metres: f32) -> i32 {
     let down = millimetres_down(metres);
     if (down as f32) < metres * 1000.0 {
         down.saturating_add(1)
@@ -74,7 +74,7 @@ pub(crate) fn millimetres_up(metres: f32) -> i32 {
 
 /// A time in whole milliseconds, rounded to the nearest. Saturates; NaN is 0.
 #[must_use]
-pub(crate) fn milliseconds(seconds: f32) -> u64 {
+pub(crate) const fn milliseconds(seconds: f32) -> u64 {
     (seconds * 1000.0 + 0.5) as u64
 }
 
@@ -90,7 +90,7 @@ const RUNGS: usize = 64;
 const SHARES: i32 = 64;
 
 /// What it takes to come to rest.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rung {
     /// For a robot that is no faster than this until it begins to brake, mm/s.
     fastest: i32,
@@ -123,14 +123,16 @@ pub struct Limits {
 impl Limits {
     /// The limits of a configuration, rounded to the safe side.
     #[must_use]
-    pub fn new(config: &Config) -> Self {
+    pub const fn new(config: &Config) -> Self {
+        let config = config.parameters();
+        let braking = millimetres_down(config.braking * config.braking_share);
         Self {
             speed_max: millimetres_down(config.speed_max),
             reverse_speed_max: millimetres_down(config.reverse_speed_max),
             turn_rate_max: millimetres_down(config.turn_rate_max),
             acceleration: millimetres_up(config.acceleration),
             // At least 100 mm/s², whatever floats round.
-            braking: millimetres_down(config.braking * config.braking_share).max(99),
+            braking: if braking < 99 { 99 } else { braking },
             turn_acceleration: millimetres_down(config.turn_acceleration),
             reaction_time: millimetres_up(config.reaction_time),
             obstacle_speed: millimetres_up(config.obstacle_speed_max),
@@ -280,17 +282,23 @@ pub struct Guard {
 impl Guard {
     /// The guard of a configuration.
     #[must_use]
-    pub fn new(config: &Config) -> Self {
+    pub const fn new(config: &Config) -> Self {
         let limits = Limits::new(config);
         let top = limits.speed_max + limits.speed_gain();
-        let mut rungs = [Rung::default(); RUNGS + 1];
-        for (k, rung) in (0..).zip(rungs.iter_mut()) {
-            let fastest = divide_up(top * k, RUNGS as i32);
-            *rung = Rung {
+        let mut rungs = [Rung {
+            fastest: 0,
+            way: 0,
+            time: 0,
+        }; RUNGS + 1];
+        let mut k = 0;
+        while k <= RUNGS {
+            let fastest = divide_up(top * k as i32, RUNGS as i32);
+            rungs[k] = Rung {
                 fastest,
                 way: limits.way_to_rest(fastest),
                 time: limits.time_to_rest(fastest),
             };
+            k += 1;
         }
         Self { limits, rungs }
     }

@@ -23,7 +23,7 @@ pub fn config(shares: &Shares) -> Config {
     let mut values = *shares;
     for (value, field) in values.iter_mut().zip(&FIELDS) {
         *value = between(*value, field.min, field.max);
-        if field.unit == "samples" {
+        if field.whole {
             *value = value.round();
         }
     }

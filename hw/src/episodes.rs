@@ -529,6 +529,14 @@ fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
         if let Some(stop) = decision.stop {
             line += &format!(", stop: {stop}");
         }
+        if let Some(view) = &decision.view {
+            for (sonar, hazard) in view.hazard.iter().enumerate() {
+                if hazard.clearance < 600 {
+                    let (class, age) = (hazard.class, hazard.age);
+                    line += &format!("; sonar {sonar}: {} mm {class} {age} ms", hazard.clearance);
+                }
+            }
+        }
     }
     for person in ride.simulation.world().people() {
         if let Some(place) = person.position() {
