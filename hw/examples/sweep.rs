@@ -42,7 +42,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if ping_ms > 0 {
             scenario.robot.firing = Firing::RoundRobin { ping_ms };
         }
-        let (summary, _) = demo::run_in_memory(&scenario, &config, usual_law(config.core, base::ring(&config)?))?;
+        let (summary, _) = demo::run_in_memory(
+            &scenario,
+            &config,
+            usual_law(config.core, base::ring(&config)?),
+        )?;
         if summary.contacts_while_moving() > 0 && moving < 10 {
             println!("seed {seed}: {:?}", summary.outcome);
         }

@@ -1,10 +1,10 @@
 //! Episodes by the hundred thousand: the program's own loop and a simulated robot in virtual time,
 //! with a line between them, among people made up from a seed.
 
+use crate::base;
 use crate::config::RobotConfig;
 use crate::demo::goal_from_start;
 use crate::draw::{Picture, Stop, draw};
-use crate::base;
 use crate::pilot::{Pilot, settings, usual_law};
 use crate::session::{Output, Settings};
 use sidestep::arcos::{BaseParameters, command};
@@ -477,7 +477,7 @@ fn run_with<L: Law<16>>(
     )?;
     let mut ride = Ride::new(episode.simulate()?, pilot, episode.link, seed)?;
     let (mut ticks, mut ticks_stopped) = (0, 0);
-    let mut breaches = Vec::new();
+    let mut people = Vec::new();
     while ride.now() < episode.scenario.time_limit_ms {
         ride.step();
         let tally = ride.host.tally();
@@ -487,7 +487,7 @@ fn run_with<L: Law<16>>(
         let stopped = ride.host.latest().is_some_and(|d| d.stop.is_some());
         ticks_stopped += if stopped { tally.ticks - ticks } else { 0 };
         if tally.ticks > ticks {
-            note_breaches(&ride, &mut breaches);
+            note_people(&ride, &mut people);
             if let Some(tell) = &mut tell {
                 tell(decided(&ride));
             }
@@ -497,7 +497,7 @@ fn run_with<L: Law<16>>(
     let mut broken = ride.simulation.truth().broken(&assumptions(config));
     broken.extend(explained(
         ride.simulation.moving_contacts(),
-        &breaches,
+        &people,
         config.core.still_speed_max.into(),
     ));
     let tally = ride.host.tally();
@@ -523,12 +523,18 @@ fn run_with<L: Law<16>>(
     })
 }
 
-/// Somebody moved whom the shield took for something that stands still: who, when (ms), how fast
-/// (m/s).
-type Breach = (usize, u64, f64);
+/// Somebody at one moment, as far as it matters to the shield.
+struct Seen {
+    person: usize,
+    time_ms: u64,
+    /// m/s.
+    speed: f64,
+    /// The shield takes them for something that stands still.
+    still: bool,
+}
 
-/// Notes the people who move where the shield believes that something stands still.
-fn note_breaches<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, breaches: &mut Vec<Breach>) {
+/// Notes how fast people are, and who is where the shield believes that something stands still.
+fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
     let Some(view) = ride.host.latest().and_then(|decision| decision.view) else {
         return;
     };
@@ -538,6 +544,7 @@ fn note_breaches<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, breaches: &mut Vec<Breac
         let Some(place) = person.position() else {
             continue;
         };
+        let mut still = false;
         for (index, hazard) in view.hazard.iter().enumerate() {
             let Some(cone) = ride.simulation.robot().ring().cone(index, &pose) else {
                 continue;
@@ -547,33 +554,45 @@ fn note_breaches<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, breaches: &mut Vec<Breac
             let width = (person.radius() / offset.norm()).min(1.0).asin();
             let range = f64::from(hazard.range) / 1000.0;
             let near = (offset.norm() - person.radius() - range).abs() <= 0.15;
-            if hazard.class == Class::Still && near && aside <= cone.half_angle + width {
-                breaches.push((i, ride.now(), person.speed()));
-            }
+            still |= hazard.class == Class::Still && near && aside <= cone.half_angle + width;
         }
+        seen.push(Seen {
+            person: i,
+            time_ms: ride.now(),
+            speed: person.speed(),
+            still,
+        });
     }
 }
 
-/// How long before a contact a person may have been taken for something that stands still, ms:
-/// from then on it takes no longer to see, to react and to brake.
+/// From when somebody begins to move to a contact, ms: it takes no longer to see that, to react and
+/// to brake.
 const BREACH_MS: u64 = 1000;
 
 /// The class bound that was broken, if that explains every one of these contacts.
-fn explained(contacts: &[MovingContact], breaches: &[Breach], bound: f64) -> Option<Broken> {
+fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
     let mut was: f64 = 0.0;
     for contact in contacts {
         let Body::Person(person) = contact.body else {
             return None;
         };
-        let recently = |(i, t, _): &&Breach| {
-            *i == person && *t <= contact.time_ms && contact.time_ms <= *t + BREACH_MS
+        let before = |seen: &&Seen| {
+            seen.person == person
+                && (0..=BREACH_MS).contains(&contact.time_ms.wrapping_sub(seen.time_ms))
         };
-        breaches.iter().find(recently)?;
-        // It was that fast by the time of the contact: a still thing is not.
-        if contact.body_speed <= bound {
+        // Taken to stand still, and then faster than that.
+        let taken = seen.iter().filter(before).find(|seen| seen.still)?;
+        let after = |seen: &&Seen| seen.time_ms >= taken.time_ms;
+        let speeds = seen
+            .iter()
+            .filter(before)
+            .filter(after)
+            .map(|seen| seen.speed);
+        let fastest = speeds.fold(contact.body_speed, f64::max);
+        if fastest <= bound {
             return None;
         }
-        was = was.max(contact.body_speed);
+        was = was.max(fastest);
     }
     (was > bound).then_some(Broken::StillSpeed { was, bound })
 }
