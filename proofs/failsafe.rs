@@ -77,7 +77,7 @@ pub fn worst_cause_is_named() {
     kani::stub(crate::shield::Guard::admissible, super::shield::any_admission)
 )]
 pub fn latched_stop_holds() {
-    let config = super::view::blind_pioneer();
+    let config = super::view::BLIND_PIONEER;
     let ring = super::view::one_sonar(&config);
     let mut shield = Shield::new(&config);
     shield.refuse(any_reason(), sidestep::quantity::Instant(1000));

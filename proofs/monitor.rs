@@ -3,7 +3,7 @@
 #[cfg(not(kani))]
 use super::kani;
 use super::shield::any_in;
-use super::view::pioneer;
+use super::view::PIONEER;
 use sidestep::monitor::Monitor;
 use sidestep::quantity::Instant;
 use sidestep::shield::Limits;
@@ -18,7 +18,7 @@ use sidestep_spec::monitor as promise;
 #[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn bound_follows_the_commands() {
-    let limits = Limits::new(&pioneer());
+    let limits = const { Limits::new(&PIONEER) };
     let mut monitor = Monitor::new();
     let first = any_in(0, limits.speed_max());
     let second = any_in(0, limits.speed_max());
@@ -52,7 +52,7 @@ pub fn bound_follows_the_commands() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn three_in_a_row_accuse() {
-    let limits = Limits::new(&pioneer());
+    let limits = const { Limits::new(&PIONEER) };
     let mut monitor = Monitor::new();
     let bound = monitor.bound(&limits);
     let mut above = 0;

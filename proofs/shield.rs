@@ -2,24 +2,21 @@
 
 #[cfg(not(kani))]
 use super::kani;
+use super::view::checked;
 use sidestep::config::{Config, Parameters};
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
 use sidestep::ring::Closing;
 use sidestep::shield::{
-    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
+    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest, no_tighter,
 };
 use sidestep::view::{Class, Hazard};
 use sidestep_spec::shield as promise;
 
-/// The configuration of a preset.
-fn checked(parameters: Parameters) -> Config {
-    match Config::new(parameters) {
-        Ok(config) => config,
-        Err(_) => unreachable!(),
-    }
-}
+/// The presets, checked.
+const SRIKANDI_2012: Config = checked(preset::SRIKANDI_II_2012);
+const SRIKANDI_2011: Config = checked(preset::SRIKANDI_II_2011);
 
 /// The limits of a configuration that differs from the Pioneer preset in whatever `vary` sets.
 fn limits_with(vary: impl Fn(&mut Parameters)) -> Limits {
@@ -34,7 +31,8 @@ fn limits_with(vary: impl Fn(&mut Parameters)) -> Limits {
 }
 
 fn pioneer() -> Limits {
-    limits_with(|_| {})
+    const LIMITS: Limits = Limits::new(&super::view::PIONEER);
+    LIMITS
 }
 
 /// Any integer in a range.
@@ -80,8 +78,7 @@ fn any_class() -> Class {
 }
 
 /// Way and time to rest are no less than the formula, for a preset and every speed it may have.
-fn rest_is_covered(parameters: Parameters) {
-    let limits = Limits::new(&checked(parameters));
+fn rest_is_covered(limits: Limits) {
     let fastest = any_in(0, limits.speed_max() + limits.speed_gain());
     assert!(promise::covers_rest(
         limits.way_to_rest(fastest),
@@ -103,7 +100,7 @@ fn rest_is_covered(parameters: Parameters) {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn rest_is_covered_pioneer() {
-    rest_is_covered(preset::PIONEER_3DX);
+    rest_is_covered(pioneer());
 }
 
 /// SH.2 for the preset of S1.
@@ -112,7 +109,7 @@ pub fn rest_is_covered_pioneer() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn rest_is_covered_2012() {
-    rest_is_covered(preset::SRIKANDI_II_2012);
+    rest_is_covered(const { Limits::new(&SRIKANDI_2012) });
 }
 
 /// SH.2 for the preset of S2.
@@ -121,7 +118,7 @@ pub fn rest_is_covered_2012() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn rest_is_covered_2011() {
-    rest_is_covered(preset::SRIKANDI_II_2011);
+    rest_is_covered(const { Limits::new(&SRIKANDI_2011) });
 }
 
 /// No configuration needs a longer way than this, mm, or a longer time, ms.
@@ -158,7 +155,7 @@ pub fn rest_does_not_overflow() {
 #[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(70))]
 pub fn plan_covers_command() {
-    let guard = Guard::new(&checked(preset::PIONEER_3DX));
+    let guard = const { Guard::new(&super::view::PIONEER) };
     let limits = *guard.limits();
     let speed = any_in(1, limits.speed_max());
     match guard.plan(speed, 0, &Motion::REST) {
@@ -176,7 +173,7 @@ pub fn plan_covers_command() {
 #[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(70))]
 pub fn plan_covers_motion() {
-    let guard = Guard::new(&checked(preset::PIONEER_3DX));
+    let guard = const { Guard::new(&super::view::PIONEER) };
     let limits = *guard.limits();
     let motion = Motion {
         speed: any_in(1, 12_000),
@@ -204,8 +201,7 @@ fn plan_covers(limits: &Limits, plan: &Plan, fastest: i32) {
 /// the model until the next command takes effect, braking ends before contact. The shield may see
 /// less than the true clearance, never more. Straight at the thing, which is the worst; for other
 /// cosines see `spec/smt`.
-fn admitted_motion_stays_safe(parameters: Parameters, class: Class) {
-    let limits = Limits::new(&checked(parameters));
+fn admitted_motion_stays_safe(limits: Limits, class: Class) {
     let fastest = any_in(0, limits.speed_max() + limits.speed_gain());
     let speed_of_thing = limits.class_speed(class);
     let clearance = any_in(0, 8_000);
@@ -307,7 +303,7 @@ pub fn fits_by_way() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn admitted_motion_stays_safe_pioneer() {
-    admitted_motion_stays_safe(preset::PIONEER_3DX, Class::Unknown);
+    admitted_motion_stays_safe(pioneer(), Class::Unknown);
 }
 
 /// The induction step for the Pioneer preset and what stands still.
@@ -316,7 +312,7 @@ pub fn admitted_motion_stays_safe_pioneer() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn admitted_motion_stays_safe_still() {
-    admitted_motion_stays_safe(preset::PIONEER_3DX, Class::Still);
+    admitted_motion_stays_safe(pioneer(), Class::Still);
 }
 
 /// The induction step for the preset of S1.
@@ -325,7 +321,7 @@ pub fn admitted_motion_stays_safe_still() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn admitted_motion_stays_safe_2012() {
-    admitted_motion_stays_safe(preset::SRIKANDI_II_2012, Class::Unknown);
+    admitted_motion_stays_safe(const { Limits::new(&SRIKANDI_2012) }, Class::Unknown);
 }
 
 /// The induction step for the preset of S2.
@@ -334,7 +330,7 @@ pub fn admitted_motion_stays_safe_2012() {
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn admitted_motion_stays_safe_2011() {
-    admitted_motion_stays_safe(preset::SRIKANDI_II_2011, Class::Unknown);
+    admitted_motion_stays_safe(const { Limits::new(&SRIKANDI_2011) }, Class::Unknown);
 }
 
 /// Braking keeps a safe state safe: while the speed falls from v to v' the robot travels
@@ -415,34 +411,19 @@ pub fn any_contact(_limits: &Limits, _distance: i32, _closing: i32) -> bool {
     kani::any()
 }
 
-/// What is admitted, for any advice, any command before, any motion and any answer about the room:
-/// limits, slew, no path tighter than advised, nothing backward unseen.
-//= shield.INV-1
-//= shield.INV-6
-//= shield.INV-13
-//= shield.INV-15
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(70))]
-#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
-#[cfg_attr(
-    kani,
-    kani::stub(crate::shield::Limits::contact_within_stop_time, any_contact)
-)]
-#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
-#[cfg_attr(kani, kani::stub(crate::shield::greatest, any_found))]
-pub fn advice_is_scaled_down() {
-    let config = super::view::blind_pioneer();
-    let guard = Guard::new(&config);
-    let limits = *guard.limits();
+/// Something that the guard admits, whatever the advice, the command before, the room and the
+/// search: the command before, what is admitted, the time the base had, ms, and whether it sees what
+/// is behind.
+fn any_admitted(advised: Twist) -> (Twist, Twist, i32, bool) {
+    let config = super::view::BLIND_PIONEER;
+    let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
+    let limits = guard.limits();
     let ring = super::view::one_sonar(&config);
     let last = twist(
         any_in(-limits.reverse_speed_max(), limits.speed_max()),
         any_in(-limits.turn_rate_max(), limits.turn_rate_max()),
     );
     let elapsed = any_in(0, limits.reaction_time());
-    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
     let hazard = [any_hazard()];
     let surroundings = Surroundings {
         hazard: &hazard,
@@ -451,7 +432,26 @@ pub fn advice_is_scaled_down() {
         ahead: None,
     };
     let admission = guard.admissible(advised, last, [elapsed; 2], &surroundings);
-    let (speed, turn_rate) = (admission.twist.speed, admission.twist.turn_rate);
+    (last, admission.twist, elapsed, ring.looks_back())
+}
+
+/// Whatever is advised, what is admitted keeps the limits and the slew, and drives backward only
+/// where it sees.
+//= shield.INV-1
+//= shield.INV-6
+//= shield.INV-15
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Surroundings::admit, odd_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::greatest, any_found))]
+pub fn any_advice_is_limited() {
+    let limits = pioneer();
+    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    let (last, admitted, elapsed, looks_back) = any_admitted(advised);
+    let (speed, turn_rate) = (admitted.speed, admitted.turn_rate);
     assert!(promise::within_limits(
         speed,
         turn_rate,
@@ -471,17 +471,26 @@ pub fn advice_is_scaled_down() {
         limits.turn_acceleration(),
         elapsed
     ));
-    assert!(promise::no_tighter(
-        speed,
-        turn_rate,
-        advised.speed,
-        advised.turn_rate
-    ));
-    assert!(promise::sees_where_it_goes(speed, ring.looks_back()));
+    assert!(promise::sees_where_it_goes(speed, looks_back));
     kani::cover!(speed > 300, "fast");
-    kani::cover!(speed < 0, "backward");
     kani::cover!(speed > 0 && turn_rate < 0, "a curve");
-    kani::cover!(speed == 0 && turn_rate > 0, "on the spot");
+}
+
+/// The code's test of the curvature is the invariant's, for any advice and any command. That what
+/// is admitted has passed the test is `what_moves_was_admitted`.
+//= shield.INV-13
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn path_bends_no_tighter() {
+    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    let speed = any_in(-2_000, 2_000);
+    let turn_rate = any_in(-4_000, 4_000);
+    kani::assume(speed.abs() <= advised.speed.abs());
+    kani::assume(turn_rate.abs() <= advised.turn_rate.abs());
+    let admitted = no_tighter(speed, turn_rate, advised);
+    assert!(!admitted || promise::no_tighter(speed, turn_rate, advised.speed, advised.turn_rate));
+    kani::cover!(admitted && speed > 0 && turn_rate < 0, "a curve");
+    kani::cover!(!admitted && speed > 0, "too tight");
 }
 
 /// A search may find anything up to its wish: nothing rests on it.
@@ -504,6 +513,7 @@ pub fn any_plan(_guard: &Guard, _speed: i32, turn_rate: i32, _motion: &Motion) -
 /// What is admitted was admitted for just that command: the guard is asked once more about what
 /// is returned, however the search went.
 //= shield.INV-9
+//= shield.INV-13
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::solver(minisat))]
@@ -511,9 +521,10 @@ pub fn any_plan(_guard: &Guard, _speed: i32, turn_rate: i32, _motion: &Motion) -
 #[cfg_attr(kani, kani::stub(crate::shield::Surroundings::admit, odd_fits))]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
 #[cfg_attr(kani, kani::stub(crate::shield::greatest, any_found))]
+#[cfg_attr(kani, kani::stub(crate::shield::no_tighter, odd_curve))]
 pub fn what_moves_was_admitted() {
-    let config = super::view::blind_pioneer();
-    let guard = Guard::new(&config);
+    let config = super::view::BLIND_PIONEER;
+    let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
     let ring = super::view::one_sonar(&config);
     let hazard = [any_hazard()];
     let surroundings = Surroundings {
@@ -528,12 +539,19 @@ pub fn what_moves_was_admitted() {
         .admissible(advised, last, [100; 2], &surroundings)
         .twist;
     #[cfg(kani)]
-    let fits = odd_fits(&surroundings, &guard, admitted);
+    let fits = odd_fits(&surroundings, &guard, admitted)
+        && odd_curve(admitted.speed, admitted.turn_rate, advised);
     #[cfg(not(kani))]
-    let fits = surroundings.admit(&guard, admitted);
+    let fits = surroundings.admit(&guard, admitted)
+        && no_tighter(admitted.speed, admitted.turn_rate, advised);
     assert!(promise::admitted(admitted.speed, admitted.turn_rate, fits));
     kani::cover!(admitted.speed > 0, "it drives");
     kani::cover!(admitted.speed == 0 && advised.speed > 300, "it does not");
+}
+
+/// A stand-in for the test of the curvature.
+pub fn odd_curve(_speed: i32, turn_rate: i32, advised: Twist) -> bool {
+    turn_rate % 3 == 0 || turn_rate == advised.turn_rate
 }
 
 /// A stand-in for the room in which no search finds its way: odd speeds fit, if the range says so.
@@ -584,31 +602,43 @@ pub fn worse_is_no_easier() {
     is_no_easier(&hazard, &worse, -1000, [0; 2]);
 }
 
-/// After a longer way, forward or backward, straight at the thing.
+/// A hazard that was seen a while ago, at any clearance.
+fn hazard_at(clearance: i32) -> Hazard {
+    Hazard {
+        range: 2_000,
+        clearance,
+        age: 100,
+        way: [50; 2],
+        turned: 0,
+        class: Class::Unknown,
+        too_fast: false,
+        stuck: false,
+    }
+}
+
+/// After a longer way, straight at the thing; forward or backward is the same sum.
 //= shield.INV-14
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn farther_is_no_easier() {
     let hazard = Hazard {
-        turned: 0,
-        class: Class::Unknown,
-        ..any_hazard()
+        way: [any_in(0, 10_000), 0],
+        ..hazard_at(any_in(-10_000, 20_000))
     };
-    let way = hazard.way.map(|way| any_in(way, 10_000));
+    let way = [any_in(hazard.way[0], 10_000), 0];
     is_no_easier(&hazard, &Hazard { way, ..hazard }, 1000, [300; 2]);
 }
 
-/// After a wider turn, from any direction, for a way of 300 mm.
+/// After a wider turn, from any direction, for a way of 300 mm and 50 mm before.
 //= shield.INV-14
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 pub fn turned_is_no_easier() {
     let hazard = Hazard {
-        way: [0; 2],
-        class: Class::Still,
-        ..any_hazard()
+        turned: any_in(0, 10_000),
+        ..hazard_at(any_in(-1_000, 2_000))
     };
     let turned = any_in(hazard.turned, 10_000);
     let worse = Hazard { turned, ..hazard };
@@ -634,7 +664,8 @@ fn is_no_easier(hazard: &Hazard, worse: &Hazard, cosine: i32, way: [i32; 2]) {
     kani::cover!(fits && !fits_worse, "worse");
 }
 
-/// SH.6: a turn that fits ends before contact. Pioneer preset, any turn rate, people.
+/// SH.6: a turn that fits ends before contact. Pioneer preset, any turn rate, any clearance, people
+/// seen a tenth of a second ago.
 //= shield.INV-12
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
@@ -643,9 +674,7 @@ pub fn turn_ends_before_contact() {
     let limits = pioneer();
     let hazard = Hazard {
         way: [0; 2],
-        turned: 0,
-        class: Class::Unknown,
-        ..any_hazard()
+        ..hazard_at(any_in(-10_000, 20_000))
     };
     let closing = Closing {
         ahead: -1000,
@@ -659,14 +688,13 @@ pub fn turn_ends_before_contact() {
         turn_rate: any_in(0, 20_000),
     };
     let o = limits.class_speed(Class::Unknown);
-    let left = 1000 * hazard.clearance - o * hazard.age;
     if limits.fits(&hazard, &closing, &plan) {
         assert!(promise::turn_ends_before_contact(
             plan.turn_rate,
             limits.turn_acceleration(),
             limits.reaction_time(),
             o,
-            i64::from(left),
+            i64::from(1000 * hazard.clearance - o * hazard.age),
         ));
         kani::cover!(plan.turn_rate > 1_500, "a fast turn");
     }
@@ -723,7 +751,7 @@ pub fn any_admission<const N: usize>(
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, any_admission))]
 pub fn any_law_is_shielded() {
-    let config = super::view::blind_pioneer();
+    let config = super::view::BLIND_PIONEER;
     let ring = super::view::one_sonar(&config);
     let mut shield = Shield::new(&config);
     let clear = super::view::clear_view();

@@ -16,25 +16,23 @@ use sidestep::track::Obstacle;
 use sidestep::view::{Class, EchoMemory, GoalView, Hazard, Look, Memory, Odometer, Pose, View};
 use sidestep_spec::view as promise;
 
-/// The Pioneer preset.
-pub fn pioneer() -> Config {
-    match Config::new(preset::PIONEER_3DX) {
+/// The configuration of parameters that are known to be good: checked as this is compiled.
+pub const fn checked(parameters: Parameters) -> Config {
+    match Config::new(parameters) {
         Ok(config) => config,
-        Err(_) => unreachable!(),
+        Err(_) => panic!("parameters out of range"),
     }
 }
 
+/// The Pioneer preset.
+pub const PIONEER: Config = checked(preset::PIONEER_3DX);
+
 /// The Pioneer preset for a robot that need not see all round: with one sonar it could not move.
-pub fn blind_pioneer() -> Config {
-    match Config::new(Parameters {
-        blind_angle_max: 3.15,
-        resume_samples: 1.0,
-        ..preset::PIONEER_3DX
-    }) {
-        Ok(config) => config,
-        Err(_) => unreachable!(),
-    }
-}
+pub const BLIND_PIONEER: Config = checked(Parameters {
+    blind_angle_max: 3.15,
+    resume_samples: 1.0,
+    ..preset::PIONEER_3DX
+});
 
 /// One sonar that looks straight ahead from the robot's edge.
 pub fn one_sonar(config: &Config) -> Ring<1> {
@@ -247,7 +245,7 @@ fn any_range() -> Option<i32> {
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 pub fn echoes_are_held() {
-    let config = blind_pioneer();
+    let config = BLIND_PIONEER;
     let ring = one_sonar(&config);
     let sonar = &ring.sonars()[0];
     let mut memory = EchoMemory::default();
@@ -304,14 +302,12 @@ pub fn echoes_are_held() {
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 pub fn still_is_earned() {
-    let config = match Config::new(Parameters {
+    const CONFIG: Config = checked(Parameters {
         blind_angle_max: 3.15,
         still_samples: 2.0,
         ..preset::PIONEER_3DX
-    }) {
-        Ok(config) => config,
-        Err(_) => unreachable!(),
-    };
+    });
+    let config = CONFIG;
     let ring = one_sonar(&config);
     let sonar = &ring.sonars()[0];
     let mut memory = EchoMemory::default();
@@ -346,7 +342,7 @@ pub fn still_is_earned() {
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
 pub fn any_observation_is_judged() {
-    let config = blind_pioneer();
+    let config = BLIND_PIONEER;
     let ring = one_sonar(&config);
     let goal = Vector2::new(5.0, 0.0);
     let mut memory = Memory::default();

@@ -424,7 +424,8 @@ impl Guard {
 
 /// Turning at `turn_rate` while driving at `speed` bends the path no tighter than advised:
 /// |ω|/|v| ≤ |ω*|/|v*|, multiplied out.
-fn no_tighter(speed: i32, turn_rate: i32, advised: Twist) -> bool {
+#[must_use]
+pub const fn no_tighter(speed: i32, turn_rate: i32, advised: Twist) -> bool {
     turn_rate.abs() * advised.speed.abs() <= advised.turn_rate.abs() * speed.abs()
 }
 

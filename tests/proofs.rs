@@ -131,10 +131,18 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
-    shield: guard_asks_enough, guard_does_not_overflow, admitted_motion_stays_safe,
-        braking_stays_safe, speed_is_admitted, search_finds_the_greatest,
-        any_law_is_shielded, turn_rate_is_limited, contact_time_is_sound, stop_set_is_monotone;
-    view: only_ranges_are_readings, echoes_are_held, any_observation_is_judged;
+    failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
+    monitor: bound_follows_the_commands, three_in_a_row_accuse;
+    shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
+        rest_does_not_overflow, plan_covers_command, plan_covers_motion,
+        admitted_motion_stays_safe_pioneer, admitted_motion_stays_safe_still,
+        admitted_motion_stays_safe_2012, admitted_motion_stays_safe_2011, fits_by_clearance,
+        fits_by_age, fits_by_way, braking_stays_safe_unknown, braking_stays_safe_still,
+        rest_is_always_safe, any_advice_is_limited, path_bends_no_tighter, what_moves_was_admitted,
+        search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
+        turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
+        stop_set_is_monotone;
+    view: only_ranges_are_readings, echoes_are_held, still_is_earned, any_observation_is_judged;
 };
 
 /// Names of the harnesses in the source: functions below a `kani::proof`.

@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     })?;
     let seconds = begun.elapsed().as_secs_f64();
     println!(
-        "law {law:?}, seeds {first} to {}, people up to {} m/s (promise: {promise})",
+        "law {law:?}, seeds {first} to {}, people up to {:.2} m/s (promise: {promise:.2})",
         first + count.max(1) - 1,
         options.person_speed
     );

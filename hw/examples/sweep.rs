@@ -4,20 +4,11 @@
 //! key is a configuration parameter as in the TOML file, or one of the simulation's: `dropout`,
 //! `false_echo`, `courteous`, `speed_limit` (m/s, of people), `ping_ms` (sonars one by one).
 
-use sidestep::avoid::Avoid;
-use sidestep::escape::Escape;
-use sidestep::quantity::OutOfRange;
-use sidestep_hw::config::RobotConfig;
+use sidestep_hw::pilot::usual_law;
 use sidestep_hw::{base, config, demo};
 use sidestep_sim::robot::Firing;
 use sidestep_sim::scenario::{Knobs, Scenario};
 use std::collections::BTreeMap;
-
-/// S1's law with a way out.
-fn law(config: &RobotConfig) -> Result<Escape<Avoid, 16>, OutOfRange> {
-    let ring = base::ring(config)?;
-    Ok(Escape::new(Avoid::new(config.core), config.core, ring))
-}
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -51,7 +42,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if ping_ms > 0 {
             scenario.robot.firing = Firing::RoundRobin { ping_ms };
         }
-        let (summary, _) = demo::run_in_memory(&scenario, &config, law(&config)?)?;
+        let (summary, _) = demo::run_in_memory(
+            &scenario,
+            &config,
+            usual_law(config.core, base::ring(&config)?),
+        )?;
         if summary.contacts_while_moving() > 0 && moving < 10 {
             println!("seed {seed}: {:?}", summary.outcome);
         }

@@ -6,7 +6,7 @@ use crate::draw::{Picture, Stop, draw};
 use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
 use crate::log::Halt;
-use crate::pilot::{Pilot, Tally, settings};
+use crate::pilot::{Pilot, Tally, UsualLaw, settings};
 use crate::transport;
 use sidestep::arcos::BaseParameters;
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
@@ -231,7 +231,7 @@ fn leave(
     folder: &Path,
     scenario: &Scenario,
     simulation: &Simulation,
-    pilot: &Pilot<sidestep::avoid::Avoid, 16>,
+    pilot: &Pilot<UsualLaw<16>, 16>,
     summary: &Summary,
 ) -> std::io::Result<()> {
     let text = summary.text(scenario);

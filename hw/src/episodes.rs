@@ -1,17 +1,18 @@
 //! Episodes by the hundred thousand: the program's own loop and a simulated robot in virtual time,
 //! with a line between them, among people made up from a seed.
 
+use crate::base;
 use crate::config::RobotConfig;
 use crate::demo::goal_from_start;
 use crate::draw::{Picture, Stop, draw};
-use crate::pilot::{Pilot, settings};
+use crate::pilot::{Pilot, settings, usual_law};
 use crate::session::{Output, Settings};
 use sidestep::arcos::{BaseParameters, command};
 use sidestep::avoid::Avoid;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
 use sidestep::quantity::OutOfRange;
-use sidestep::view::View;
+use sidestep::view::{Class, View};
 use sidestep_sim::STEP_MS;
 use sidestep_sim::episode::{Episode, Options};
 use sidestep_sim::geometry::{heading_of, wrap};
@@ -20,6 +21,7 @@ use sidestep_sim::robot::Firing;
 use sidestep_sim::scenario::Scenario;
 use sidestep_sim::simulation::{ByKind, MovingContact, Outcome, Sample, Simulation};
 use sidestep_sim::truth::{Assumptions, Broken};
+use sidestep_sim::world::Body;
 use std::collections::{BTreeMap, VecDeque};
 use std::error::Error;
 use std::fmt;
@@ -450,7 +452,10 @@ pub fn run(
     tell: Tell<'_>,
 ) -> Result<Run, Box<dyn Error>> {
     match law {
-        LawKind::Avoid => run_with(seed, options, config, Avoid::new(config.core), tell),
+        LawKind::Avoid => {
+            let law = usual_law(config.core, base::ring(config)?);
+            run_with(seed, options, config, law, tell)
+        }
         LawKind::Chaos => run_with(seed, options, config, Chaos::new(seed), tell),
         LawKind::Reckless => run_with(seed, options, config, Reckless, tell),
     }
@@ -472,6 +477,7 @@ fn run_with<L: Law<16>>(
     )?;
     let mut ride = Ride::new(episode.simulate()?, pilot, episode.link, seed)?;
     let (mut ticks, mut ticks_stopped) = (0, 0);
+    let mut people = Vec::new();
     while ride.now() < episode.scenario.time_limit_ms {
         ride.step();
         let tally = ride.host.tally();
@@ -480,13 +486,20 @@ fn run_with<L: Law<16>>(
         }
         let stopped = ride.host.latest().is_some_and(|d| d.stop.is_some());
         ticks_stopped += if stopped { tally.ticks - ticks } else { 0 };
-        if tally.ticks > ticks
-            && let Some(tell) = &mut tell
-        {
-            tell(decided(&ride));
+        if tally.ticks > ticks {
+            note_people(&ride, &mut people);
+            if let Some(tell) = &mut tell {
+                tell(decided(&ride));
+            }
         }
         ticks = tally.ticks;
     }
+    let mut broken = ride.simulation.truth().broken(&assumptions(config));
+    broken.extend(explained(
+        ride.simulation.moving_contacts(),
+        &people,
+        config.core.still_speed_max.into(),
+    ));
     let tally = ride.host.tally();
     let stops = ride.host.stops().iter().map(|stop| Stop {
         t: stop.t,
@@ -498,7 +511,7 @@ fn run_with<L: Law<16>>(
             kind: episode.scenario.name,
             outcome: ride.simulation.outcome(),
             contacts: ride.simulation.moving_contacts().to_vec(),
-            broken: ride.simulation.truth().broken(&assumptions(config)),
+            broken,
             stops: tally.stops.clone(),
             ticks_stopped,
             ticks,
@@ -508,6 +521,80 @@ fn run_with<L: Law<16>>(
         scenario: episode.scenario,
         simulation: ride.simulation,
     })
+}
+
+/// Somebody at one moment, as far as it matters to the shield.
+struct Seen {
+    person: usize,
+    time_ms: u64,
+    /// m/s.
+    speed: f64,
+    /// The shield takes them for something that stands still.
+    still: bool,
+}
+
+/// Notes how fast people are, and who is where the shield believes that something stands still.
+fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
+    let Some(view) = ride.host.latest().and_then(|decision| decision.view) else {
+        return;
+    };
+    let base = ride.simulation.robot().base();
+    let pose = base.pose();
+    for (i, person) in ride.simulation.world().people().iter().enumerate() {
+        let Some(place) = person.position() else {
+            continue;
+        };
+        let mut still = false;
+        for (index, hazard) in view.hazard.iter().enumerate() {
+            let Some(cone) = ride.simulation.robot().ring().cone(index, &pose) else {
+                continue;
+            };
+            let offset = place - cone.apex.position;
+            let aside = wrap(heading_of(&offset) - cone.apex.heading).abs();
+            let width = (person.radius() / offset.norm()).min(1.0).asin();
+            let range = f64::from(hazard.range) / 1000.0;
+            let near = (offset.norm() - person.radius() - range).abs() <= 0.15;
+            still |= hazard.class == Class::Still && near && aside <= cone.half_angle + width;
+        }
+        seen.push(Seen {
+            person: i,
+            time_ms: ride.now(),
+            speed: person.speed(),
+            still,
+        });
+    }
+}
+
+/// From when somebody begins to move to a contact, ms: it takes no longer to see that, to react and
+/// to brake.
+const BREACH_MS: u64 = 1000;
+
+/// The class bound that was broken, if that explains every one of these contacts.
+fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
+    let mut was: f64 = 0.0;
+    for contact in contacts {
+        let Body::Person(person) = contact.body else {
+            return None;
+        };
+        let before = |seen: &&Seen| {
+            seen.person == person
+                && (0..=BREACH_MS).contains(&contact.time_ms.wrapping_sub(seen.time_ms))
+        };
+        // Taken to stand still, and then faster than that.
+        let taken = seen.iter().filter(before).find(|seen| seen.still)?;
+        let after = |seen: &&Seen| seen.time_ms >= taken.time_ms;
+        let speeds = seen
+            .iter()
+            .filter(before)
+            .filter(after)
+            .map(|seen| seen.speed);
+        let fastest = speeds.fold(contact.body_speed, f64::max);
+        if fastest <= bound {
+            return None;
+        }
+        was = was.max(fastest);
+    }
+    (was > bound).then_some(Broken::StillSpeed { was, bound })
 }
 
 /// What was decided last, and how things truly are.

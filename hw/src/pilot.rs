@@ -9,11 +9,14 @@ use crate::session::{Event, Output, Session, Settings};
 use nalgebra::Vector2;
 use sidestep::arcos::BaseParameters;
 use sidestep::avoid::Avoid;
+use sidestep::config::Config;
 use sidestep::controller::{Controller, Decision};
+use sidestep::escape::Escape;
 use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::Law;
 use sidestep::observation::Observation;
 use sidestep::quantity::{Instant, OutOfRange};
+use sidestep::ring::Ring;
 use sidestep::shield::Limits;
 use sidestep::view::Class;
 use std::collections::{BTreeMap, VecDeque};
@@ -102,8 +105,17 @@ pub fn settings(config: &RobotConfig, serial: bool, baud: Option<u32>) -> Settin
     }
 }
 
-impl<const N: usize> Pilot<Avoid, N> {
-    /// A pilot with S1's law, to a goal (metres) in the frame in which the robot starts at (0, 0)
+/// The law that drives unless another is asked for: S1's, with a way out of where it is stuck.
+pub type UsualLaw<const N: usize> = Escape<Avoid, N>;
+
+/// The usual law for a ring of sonars.
+#[must_use]
+pub fn usual_law<const N: usize>(config: Config, ring: Ring<N>) -> UsualLaw<N> {
+    Escape::new(Avoid::new(config), config, ring)
+}
+
+impl<const N: usize> Pilot<UsualLaw<N>, N> {
+    /// A pilot with the usual law, to a goal (metres) in the frame in which the robot starts at (0, 0)
     /// looking along x.
     ///
     /// # Errors
@@ -114,7 +126,8 @@ impl<const N: usize> Pilot<Avoid, N> {
         settings: Settings,
         log: Box<dyn Write + Send>,
     ) -> Result<Self, OutOfRange> {
-        Self::with_law(Avoid::new(config.core), config, goal, settings, log)
+        let law = usual_law(config.core, base::ring(&config)?);
+        Self::with_law(law, config, goal, settings, log)
     }
 }
 

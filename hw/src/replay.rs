@@ -3,10 +3,9 @@
 use crate::base::{self, Base};
 use crate::config::{RobotConfig, Sonars};
 use crate::log::{Log, Record, Told, from_hex};
-use crate::pilot::told;
+use crate::pilot::{told, usual_law};
 use nalgebra::Vector2;
 use sidestep::arcos::{BaseParameters, Frame, StandardInformation};
-use sidestep::avoid::Avoid;
 use sidestep::config::{Config, Parameters};
 use sidestep::controller::Controller;
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, SonarSample};
@@ -48,7 +47,7 @@ fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, Stri
     let mut controller = Controller::new(
         config.core,
         ring,
-        Avoid::new(config.core),
+        usual_law(config.core, ring),
         Vector2::new(goal[0], goal[1]),
     )
     .map_err(|error| format!("line 1: {error}"))?;
@@ -221,7 +220,7 @@ fn feed<const N: usize>(
     });
     let ring = Ring::new(&placements, &config).map_err(|error| error.to_string())?;
     let goal = Vector2::new(100.0, 0.0);
-    let mut controller = Controller::new(config, ring, Avoid::new(config), goal)
+    let mut controller = Controller::new(config, ring, usual_law(config, ring), goal)
         .map_err(|error| error.to_string())?;
     let mut table = Table::default();
     for (i, (_, row)) in rows.iter().enumerate() {

@@ -130,7 +130,7 @@ impl Episode {
         Ok(Self {
             scenario: Scenario {
                 name: KINDS[kind],
-                description: format!("episode {seed}, {people} people up to {speed} m/s"),
+                description: format!("episode {seed}, {people} people up to {speed:.2} m/s"),
                 world: stage.world,
                 start: stage.start,
                 goal: stage.goal,

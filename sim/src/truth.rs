@@ -78,6 +78,14 @@ pub enum Broken {
         /// The bound.
         bound: u64,
     },
+    /// What was seen to stand still was faster than that is to be (m/s). Only whoever knows what the
+    /// shield believes can tell.
+    StillSpeed {
+        /// As fast as this.
+        was: f64,
+        /// The bound.
+        bound: f64,
+    },
     /// These sonars were broken for good.
     Sonars(Vec<usize>),
 }
@@ -91,6 +99,7 @@ impl Broken {
             Self::Braking { .. } => "braking",
             Self::Acceleration { .. } => "acceleration",
             Self::Reaction { .. } => "reaction time",
+            Self::StillSpeed { .. } => "still things' speed",
             Self::Sonars(_) => "sonars in order",
         }
     }
@@ -100,7 +109,7 @@ impl fmt::Display for Broken {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = self.name();
         match self {
-            Self::PersonSpeed { was, bound } => {
+            Self::PersonSpeed { was, bound } | Self::StillSpeed { was, bound } => {
                 write!(f, "{name}: {was:.2} m/s, assumed at most {bound:.2}")
             }
             Self::Braking { was, bound } => {
