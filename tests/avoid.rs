@@ -713,7 +713,7 @@ fn maneuver_ends_only_past_the_obstacle() {
 /// What a robot at the origin with the goal ahead sees of something at this distance and bearing.
 fn sees(distance: f32, bearing: f32) -> View<3> {
     let config = s1();
-    let ring = settings::ring::<3>(&config);
+    let (config, ring) = settings::fitted::<3>(&config);
     let mut view = Memory::default()
         .update(
             &in_order(10_000, [5.0; 3]),

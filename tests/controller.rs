@@ -11,13 +11,17 @@ use proptest::prelude::*;
 use sidestep::avoid::Avoid;
 use sidestep::config::{Config, FIELDS, Parameters};
 use sidestep::controller::{Controller, Decision};
+use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::{Advice, Law};
 use sidestep::observation::Observation;
 use sidestep::preset;
 use sidestep::quantity::Instant;
-use sidestep::shield::{Limit, StopReason};
+use sidestep::shield::Limit;
+use sidestep::view::Class;
 use sidestep_spec::{avoid, shield, view as belief};
 
+#[path = "../fuzz/targets/reference.rs"]
+mod reference;
 #[path = "../fuzz/targets/watch.rs"]
 mod watch;
 use watch::{Told, Watched};
@@ -36,7 +40,8 @@ const AHEAD: Advice = Advice {
 /// Puts a sequence of observations to a law that advises what it is told.
 fn put_to_any_law<const N: usize>(config: Config, ticks: Vec<(Observation<N>, Advice)>) {
     let law = Told::new(Advice::REST);
-    let mut watched = Watched::new(config, settings::ring::<N>(&config), law, GOAL);
+    let (config, ring) = settings::fitted::<N>(&config);
+    let mut watched = Watched::new(config, ring, law, GOAL);
     for (observation, advice) in ticks {
         watched.controller.law().advice.set(advice);
         watched.tick(&observation);
@@ -45,7 +50,7 @@ fn put_to_any_law<const N: usize>(config: Config, ticks: Vec<(Observation<N>, Ad
 
 /// Puts a sequence of observations to S1's law.
 fn put_to_avoid<const N: usize>(config: Config, ticks: Vec<Observation<N>>) {
-    let ring = settings::ring::<N>(&config);
+    let (config, ring) = settings::fitted::<N>(&config);
     let mut watched = Watched::new(config, ring, Avoid::new(config), GOAL);
     for observation in ticks {
         let (decision, advice) = watched.tick(&observation);
@@ -142,7 +147,7 @@ struct Drive<L, const N: usize> {
 
 impl<L: Law<N> + Clone, const N: usize> Drive<L, N> {
     fn new(config: Config, law: L, other: f32, coming: f32) -> Self {
-        let ring = settings::ring(&config);
+        let (config, ring) = settings::fitted(&config);
         Self {
             watched: Watched::new(config, ring, law, GOAL),
             now: 10_000,
@@ -289,7 +294,13 @@ fn motion_resumes_only_after_clear_ticks() {
             }
             for _ in 1..resume_samples as u32 {
                 let decision = drive.tick();
-                assert!(shield::stop_has_no_speed(true, decision.command.speed()));
+                assert!(shield::stop_is_kept(
+                    true,
+                    false,
+                    false,
+                    decision.command.speed(),
+                    decision.command.turn_rate()
+                ));
                 assert_eq!(decision.stop.expect("still").to_string(), reason);
             }
             let decision = drive.tick();
@@ -405,13 +416,18 @@ proptest! {
             last = drive.tick();
         }
         let mut last = last.view.expect("a view");
-        prop_assume!(last.range[0] < 3_000);
+        prop_assume!(last.hazard[0].range < 3_000);
         drive.other = 100.0;
         for _ in 0..9 {
             let decision = drive.tick();
             let view = decision.view.expect("a view");
-            prop_assert!(belief::not_freed_at_once(last.range[0], view.range[0], 0));
-            prop_assert!(view.clearance[0] < last.clearance[0]);
+            let (before, after) = (&last.hazard[0], &view.hazard[0]);
+            prop_assert!(belief::not_freed_at_once(before.range, after.range, 0));
+            prop_assert!(belief::losing_sight_frees_nothing(
+                [before.clearance, after.clearance],
+                [before.age, after.age],
+                [before.class == Class::Unknown, after.class == Class::Unknown]
+            ));
             prop_assert!(view.obstacle.is_some());
             last = view;
         }
@@ -554,7 +570,7 @@ fn decisions_are_repeatable() {
 fn goals_are_checked() {
     let config = pioneer();
     let controller = |x: f32, y: f32| {
-        let ring = settings::ring::<3>(&config);
+        let (config, ring) = settings::fitted::<3>(&config);
         Controller::new(config, ring, Avoid::new(config), [x, y].into())
     };
     assert!(controller(1e3, -1e3).is_ok());
@@ -581,7 +597,9 @@ fn presets_are_good() {
     ] {
         let config = Config::new(preset).expect("a preset");
         assert_eq!(*config.parameters(), preset);
-        assert_eq!(settings::ring::<8>(&config).sonars().len(), 8);
+        // The ring that comes with the robot, or S1's three, as they are.
+        let (fitted, _) = settings::fitted::<16>(&config);
+        assert_eq!(fitted, config);
     }
 }
 

@@ -15,7 +15,7 @@ use sidestep::observation::{BaseStatus, Sighting, SonarReading};
 use sidestep::preset;
 use sidestep::quantity::{Instant, Length};
 use sidestep::track::Obstacle;
-use sidestep::view::{GoalView, Pose, View};
+use sidestep::view::{Class, GoalView, Hazard, Pose, View};
 use sidestep_spec::{avoid as law, kinematics as drive};
 use std::f32::consts::FRAC_PI_3;
 
@@ -191,6 +191,18 @@ fn any_point(bytes: &mut Bytes) -> Vector2<f32> {
     Vector2::new(coordinate(), coordinate())
 }
 
+/// Nothing within 5 m.
+const NOTHING: Hazard = Hazard {
+    range: 5_000,
+    clearance: 5_000,
+    age: 0,
+    way: [0; 2],
+    turned: 0,
+    class: Class::Unknown,
+    too_fast: false,
+    stuck: false,
+};
+
 /// S1's law, shown any views one after the other.
 fn advice(config: &Config, bytes: &mut Bytes) {
     let mut avoid = Avoid::new(*config);
@@ -207,6 +219,7 @@ fn advice(config: &Config, bytes: &mut Bytes) {
                 heading: bytes.angle(),
             },
             speed: bytes.speed().get(),
+            turn_rate: 0.0,
             odometry_age: 0,
             goal: GoalView {
                 heading: bytes.angle(),
@@ -214,10 +227,10 @@ fn advice(config: &Config, bytes: &mut Bytes) {
             },
             // The law asks neither for single readings nor for the status of the base.
             sonar: [SonarReading::NoEcho(Length::MAX); 3],
-            range: [5_000; 3],
-            clearance: [5_000; 3],
+            hazard: [NOTHING; 3],
             obstacle: (flags & 4 == 0).then(|| any_obstacle(bytes)),
             room: [bytes.length(), bytes.length()],
+            beside: [bytes.length(), bytes.length()],
             base: BaseStatus {
                 motors_enabled: true,
                 stalled: false,

@@ -10,11 +10,13 @@ use super::settings::{self, Shares};
 use super::watch::{Told, Watched};
 use sidestep::avoid::Avoid;
 use sidestep::config::{Config, FIELDS, Parameters};
+use sidestep::escape::Escape;
 use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, Sighting, SonarSample};
 use sidestep::preset;
 use sidestep::quantity::Instant;
+use sidestep::ring::Ring;
 use sidestep_spec::avoid as avoidance;
 use std::f32::consts::{PI, TAU};
 
@@ -31,13 +33,16 @@ pub fn run(data: &[u8]) {
     match kind & 3 {
         0 => with_law::<3>(kind, &mut bytes),
         1 => with_law::<8>(kind, &mut bytes),
+        2 => with_law::<16>(kind, &mut bytes),
         _ => with_law::<1>(kind, &mut bytes),
     }
 }
 
 fn with_law<const N: usize>(kind: u8, bytes: &mut Bytes) {
     let config = any_config((kind >> 3) & 3, bytes);
+    let (config, ring) = settings::fitted::<N>(&config);
     let told = kind & 4 == 0;
+    let escapes = kind & 0x40 != 0;
     let follows = kind & 0x20 == 0;
     if told {
         let law = Told::new(Advice {
@@ -50,7 +55,10 @@ fn with_law<const N: usize>(kind: u8, bytes: &mut Bytes) {
                 turn_rate: bytes.number(),
             });
         };
-        live::<_, N>(config, law, tell, |_| {}, follows, bytes);
+        live::<_, N>(config, ring, law, tell, |_| {}, follows, bytes);
+    } else if escapes {
+        let law = Escape::new(Avoid::new(config), config, ring);
+        live::<_, N>(config, ring, law, |_, _| {}, |_| {}, follows, bytes);
     } else {
         let within = |advice: Advice| {
             assert!(avoidance::advice_in_range(
@@ -62,6 +70,7 @@ fn with_law<const N: usize>(kind: u8, bytes: &mut Bytes) {
         };
         live::<_, N>(
             config,
+            ring,
             Avoid::new(config),
             |_, _| {},
             within,
@@ -99,13 +108,13 @@ fn any_config(choice: u8, bytes: &mut Bytes) -> Config {
 
 fn live<L: Law<N> + Clone, const N: usize>(
     config: Config,
+    ring: Ring<N>,
     law: L,
     tell: impl Fn(&L, &mut Bytes),
     judge: impl Fn(Advice),
     follows: bool,
     bytes: &mut Bytes,
 ) {
-    let ring = settings::ring::<N>(&config);
     let mut watched = Watched::new(config, ring, law, [6.0, 0.0]);
     let mut world = in_order::<N>();
     for _ in 0..TICKS {
@@ -136,10 +145,11 @@ fn live<L: Law<N> + Clone, const N: usize>(
             lose_something(&mut world, bytes);
         }
         if what & 0x40 != 0 {
-            if bytes.truth() {
-                world.sighting = Some(any_sighting(now, bytes));
-            } else {
-                watched.halt(StopReason::LinkLost, now);
+            match bytes.u8() % 4 {
+                0 => watched.halt(StopReason::LinkLost, now),
+                1 => world.sighting = Some(any_sighting(now, bytes)),
+                2 => watched.reset(),
+                _ => watched.halt(StopReason::Operator, now),
             }
         }
         let (_, advice) = watched.tick(&world);

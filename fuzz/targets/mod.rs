@@ -8,5 +8,7 @@ pub mod arcos;
 pub mod avoid;
 pub mod bytes;
 pub mod controller;
+pub mod reference;
 pub mod settings;
+pub mod shield;
 pub mod watch;

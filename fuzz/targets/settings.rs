@@ -35,11 +35,13 @@ pub fn config(shares: &Shares) -> Config {
     p.sonar_range_min = between(at.sonar_range_min, 0.0, p.min_distance.min(0.5));
     p.turn_distance = between(at.turn_distance, 0.01, (2.0 * p.min_distance).min(5.0));
     p.cruise_speed = between(at.cruise_speed, 0.01, p.speed_max);
+    p.braking_share = between(at.braking_share, (0.1 / p.braking).max(0.1), 1.0);
+    p.still_speed_max = between(at.still_speed_max, 0.0, p.obstacle_speed_max);
     Config::new(p).expect("within every range")
 }
 
-/// The sonars of a robot with 1, 3 or 8 of them: ahead; ahead, left and right as S1 has them; the
-/// front array of a Pioneer.
+/// The sonars of a robot with 1, 3, 8 or 16 of them: ahead; ahead, left and right as S1 has them; the
+/// front array of a Pioneer; its whole ring.
 ///
 /// # Panics
 /// If `N` is none of these.
@@ -55,16 +57,40 @@ pub fn placements<const N: usize>() -> [Placement; N] {
             let (x, y, heading) = three[i];
             Placement::from_mm_deg(x, y, heading)
         }
-        8 => pioneer(i),
+        8 | 16 => pioneer(i),
         _ => panic!("no ring of {N} sonars"),
     })
 }
 
-/// The ring of [`placements`].
+/// The ring of [`placements`], and the configuration changed as little as it takes for the ring to
+/// be good with it: every configuration that goes with the ring stays as it is.
 ///
 /// # Panics
-/// If that ring is refused.
+/// If a ring is refused for what no change mends.
 #[must_use]
-pub fn ring<const N: usize>(config: &Config) -> Ring<N> {
-    Ring::new(&placements(), config).expect("a ring that looks forward")
+pub fn fitted<const N: usize>(config: &Config) -> (Config, Ring<N>) {
+    let mut p = *config.parameters();
+    // Each turn mends what is named, or halves what asks for more than sonars see.
+    for _ in 0..100 {
+        let config = Config::new(p).expect("within every range");
+        match Ring::new(&placements(), &config) {
+            Ok(ring) => return (config, ring),
+            Err(refused) if refused.field == "safe_distance" => {
+                if refused.min <= 10.0 {
+                    p.safe_distance = refused.min;
+                    p.sonar_range_max = p.sonar_range_max.max(refused.min);
+                } else {
+                    p.cruise_speed = (p.cruise_speed / 2.0).max(0.01);
+                    p.reaction_time = (p.reaction_time / 2.0).max(0.02);
+                    p.obstacle_speed_max /= 2.0;
+                    p.still_speed_max = p.still_speed_max.min(p.obstacle_speed_max);
+                }
+            }
+            Err(refused) => {
+                assert_eq!(refused.field, "gap between sonars ahead");
+                p.blind_angle_max = refused.value;
+            }
+        }
+    }
+    panic!("no ring of {N} sonars for {config:?}");
 }

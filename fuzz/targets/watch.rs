@@ -1,14 +1,16 @@
 //! A controller with someone watching: every tick is judged by the predicates of the law book.
 
+use super::reference::{has_room, left_for_turn};
 use sidestep::config::Config;
 use sidestep::controller::{Controller, Decision};
+use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{Observation, SonarReading};
 use sidestep::quantity::Instant;
 use sidestep::ring::Ring;
-use sidestep::shield::{Command, Limits, StopReason};
-use sidestep::view::View;
-use sidestep_spec::{avoid, shield, view as belief};
+use sidestep::shield::{Command, Guard, Limits, Motion, Twist};
+use sidestep::view::{Class, Hazard, View};
+use sidestep_spec::{avoid, failsafe, shield, view as belief};
 use std::cell::Cell;
 
 /// A law that advises what it is told to, whatever it sees.
@@ -45,6 +47,7 @@ pub struct Watched<L, const N: usize> {
     pub controller: Controller<L, N>,
     config: Config,
     ring: Ring<N>,
+    guard: Guard,
     last: Command,
     last_tick: Option<Instant>,
     /// Ticks in a row since one in which something was wrong that does not depend on memory.
@@ -61,6 +64,28 @@ fn up(metres: f32) -> i32 {
     (metres * 1000.0).ceil() as i32
 }
 
+/// Advice as the guard is asked about it: in mm/s and mrad/s, towards zero; none if it is no number
+/// or beyond 10 m/s or 20 rad/s.
+fn in_whole_numbers(advice: Advice) -> Option<Twist> {
+    let sensible = advice.speed.abs() <= 10.0 && advice.turn_rate.abs() <= 20.0;
+    sensible.then(|| Twist {
+        speed: (advice.speed * 1000.0) as i32,
+        turn_rate: (advice.turn_rate * 1000.0) as i32,
+    })
+}
+
+/// A hazard that is a little worse in every respect.
+fn worse(hazard: &Hazard) -> Hazard {
+    Hazard {
+        clearance: hazard.clearance - 1,
+        age: hazard.age + 1,
+        way: hazard.way.map(|way| way + 1),
+        turned: hazard.turned + 1,
+        class: Class::Unknown,
+        ..*hazard
+    }
+}
+
 impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     /// A controller at rest that is watched from now on; the goal in metres.
     ///
@@ -73,6 +98,7 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             controller,
             config,
             ring,
+            guard: Guard::new(&config),
             last: Command::REST,
             last_tick: None,
             sound_ticks: 0,
@@ -124,14 +150,14 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             .last_tick
             .and_then(|last| observation.now.since(last))
             .unwrap_or(0);
+        let was_latched = self.controller.shield().is_latched();
         let mut law = self.controller.law().clone();
         let decision = self.controller.tick(observation);
         let advice = decision.view.as_ref().map(|view| law.advise(view));
+        let advised = advice.map(in_whole_numbers);
 
-        let finite =
-            advice.is_none_or(|advice| advice.speed.is_finite() && advice.turn_rate.is_finite());
-        if trusted && finite {
-            self.sound_ticks += 1;
+        if trusted && advised != Some(None) {
+            self.sound_ticks = self.sound_ticks.saturating_add(1);
         } else {
             self.sound_ticks = 0;
             assert!(decision.stop.is_some(), "no stop for {observation:?}");
@@ -140,9 +166,9 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
                 decision.command.turn_rate()
             ));
         }
-        self.judge(&decision, elapsed);
-        if let Some(advice) = advice {
-            self.judge_reason(&decision, advice);
+        self.judge(&decision, elapsed, was_latched);
+        if let Some(advised) = advised {
+            self.judge_advice(&decision, advised.unwrap_or(Twist::REST));
         }
         if let Some(view) = &decision.view {
             // The law is told of every stop but the one that its own advice causes.
@@ -160,39 +186,73 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     ///
     /// # Panics
     /// If a predicate is broken.
-    pub fn halt(&mut self, reason: StopReason, now: Instant) -> Decision<N> {
+    pub fn halt(&mut self, reason: StopReason, now: Instant) {
+        let was_latched = self.controller.shield().is_latched();
         let decision = self.controller.halt(reason, now);
         self.sound_ticks = 0;
-        assert_eq!(decision.stop, Some(reason));
+        assert!(was_latched || decision.stop == Some(reason));
         assert!(shield::untrusted_rests(
             decision.command.speed(),
             decision.command.turn_rate()
         ));
-        self.judge(&decision, 0);
+        self.judge(&decision, 0, was_latched);
         self.last = decision.command;
         // A time that goes back is noticed by the next tick, and until then it is not the time.
         self.last_tick = Some(self.last_tick.map_or(now, |last| last.max(now)));
-        decision
+    }
+
+    /// Somebody resets a latched stop.
+    ///
+    /// # Panics
+    /// If it is still latched.
+    pub fn reset(&mut self) {
+        self.controller.reset();
+        self.sound_ticks = 0;
+        assert!(!self.controller.shield().is_latched());
     }
 
     fn limits(&self) -> &Limits {
-        self.controller.shield().limits()
+        self.guard.limits()
     }
 
     /// What holds for every command, whatever was seen.
-    fn judge(&self, decision: &Decision<N>, elapsed: u64) {
+    fn judge(&self, decision: &Decision<N>, elapsed: u64, was_latched: bool) {
         let limits = self.limits();
         let (speed, turn_rate) = (decision.command.speed(), decision.command.turn_rate());
         assert!(shield::within_limits(
             speed,
             turn_rate,
             limits.speed_max(),
+            limits.reverse_speed_max(),
             limits.turn_rate_max()
         ));
-        assert!(shield::stop_has_no_speed(decision.stop.is_some(), speed));
+        assert!(shield::sees_where_it_goes(speed, self.ring.looks_back()));
+        let latched = self.controller.shield().is_latched();
+        let stopped = decision.stop.is_some();
+        assert!(failsafe::latched_rests(
+            was_latched,
+            latched,
+            speed,
+            turn_rate
+        ));
+        assert!(stopped || !latched);
+        assert!(shield::stop_is_kept(
+            stopped,
+            decision.stop.is_some_and(StopReason::may_turn),
+            latched,
+            speed,
+            turn_rate
+        ));
         // After a fault clears, motion waits for its number of ticks.
-        let waiting = self.sound_ticks < self.config.resume_samples as u32;
-        assert!(shield::stop_has_no_speed(waiting, speed));
+        assert!(stopped || self.sound_ticks >= self.config.resume_samples as u32);
+        // What is done is as severe as what it is done about.
+        let due = match (stopped, latched) {
+            (_, true) => Action::LatchedStop,
+            (true, false) => Action::Stop,
+            (false, false) => Action::Run,
+        };
+        assert!(failsafe::monotone(decision.action, due));
+        assert!((decision.action >= Action::Stop) == stopped);
         // However long the pause, the base gains no more than in one reaction time.
         let elapsed = elapsed.min(limits.reaction_time() as u64) as i32;
         assert!(shield::slew_kept(
@@ -201,7 +261,7 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             limits.acceleration(),
             elapsed
         ));
-        assert!(shield::turn_slew_kept(
+        assert!(shield::slew_kept(
             self.last.turn_rate(),
             turn_rate,
             limits.turn_acceleration(),
@@ -216,67 +276,93 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
         }
     }
 
-    /// A robot that is slower than its law would have it says why.
-    fn judge_reason(&self, decision: &Decision<N>, advice: Advice) {
-        let advised = (advice.speed * 1000.0) as i32;
-        let slower = decision.command.speed() < advised;
+    /// A robot bends its path no tighter than its law would have it, and is not slower without a
+    /// reason.
+    fn judge_advice(&self, decision: &Decision<N>, advised: Twist) {
+        let (speed, turn_rate) = (decision.command.speed(), decision.command.turn_rate());
+        assert!(shield::no_tighter(
+            speed,
+            turn_rate,
+            advised.speed,
+            advised.turn_rate
+        ));
+        let slower = speed.abs() < advised.speed.abs();
         let reasoned = decision.stop.is_some() || decision.limit.is_some();
         assert!(
             !slower || reasoned,
-            "advised {advised} mm/s, told {:?}, without a reason",
+            "advised {advised:?}, told {:?}, without a reason",
             decision.command
         );
+    }
+
+    /// What the robot may be at: as measured, and gained since, or as told.
+    fn motion(&self, view: &View<N>) -> Motion {
+        let limits = self.limits();
+        let turn_rate = up(view.turn_rate.abs()).max(self.last.turn_rate().abs());
+        let age = view.odometry_age.min(limits.reaction_time() as u64) as i32;
+        let gained = (limits.acceleration() * age + 999) / 1000;
+        let measured = up(view.speed.abs()) + limits.speed_error() + gained;
+        let at_rest = view.speed == 0.0 && self.last.speed() == 0;
+        Motion {
+            speed: if at_rest {
+                0
+            } else {
+                measured.max(self.last.speed().abs())
+            },
+            backward: view.speed < 0.0 || (view.speed == 0.0 && self.last.speed() < 0),
+            turn_rate,
+        }
     }
 
     /// What holds for a command that follows from a view.
     fn judge_motion(&self, view: &View<N>, command: Command) {
         let limits = self.limits();
-        let (speed, turn_rate) = (command.speed(), command.turn_rate());
-        // What the robot may be at: as measured, and gained since, or as told.
-        let age = view.odometry_age.min(limits.reaction_time() as u64) as i32;
-        let gained = (limits.acceleration() * age + 999) / 1000;
-        let speed_bound = (up(view.speed.abs()) + gained.min(1_000)).max(self.last.speed());
-        let judged_at = speed.max(speed_bound - limits.speed_gain());
-        assert!(shield::judged_at_what_it_may_be(
-            speed,
-            judged_at,
-            speed_bound,
-            limits.speed_gain()
-        ));
-        let required = limits.required_clearance(judged_at);
-        let fastest = match speed {
-            0 => speed_bound,
-            _ => speed_bound.max(speed + limits.speed_gain()),
+        let twist = Twist {
+            speed: command.speed(),
+            turn_rate: command.turn_rate(),
         };
-        for &clearance in &view.clearance {
-            assert!(shield::admitted(speed, required, clearance));
-            assert!(shield::turn_ends_before_contact(
-                turn_rate,
-                limits.turn_acceleration(),
-                limits.reaction_time(),
-                limits.obstacle_speed(),
-                clearance.saturating_sub(limits.way_to_rest(fastest))
-            ));
+        let motion = self.motion(view);
+        for (hazard, sonar) in view.hazard.iter().zip(self.ring.sonars()) {
+            let closing = &sonar.closing;
+            let room = has_room(limits, hazard, closing, &motion, twist);
+            assert!(shield::admitted(twist.speed, twist.turn_rate, room));
+            if twist != Twist::REST {
+                assert!(shield::turn_ends_before_contact(
+                    twist.turn_rate,
+                    limits.turn_acceleration(),
+                    limits.reaction_time(),
+                    limits.class_speed(hazard.class),
+                    left_for_turn(limits, hazard, closing, &motion, twist)
+                ));
+            }
+            let worse = worse(hazard);
+            if let Some(plan) = self.guard.plan(twist.speed, twist.turn_rate, &motion) {
+                assert!(shield::worse_is_no_easier(
+                    limits.fits(hazard, closing, &plan),
+                    limits.fits(&worse, closing, &plan)
+                ));
+            }
         }
         if let Some(obstacle) = &view.obstacle {
-            // Beyond the promise, nothing is promised; and what is out of sight is no reason to go
-            // faster: no time that passes gives leave to gain speed.
-            assert!(shield::stop_has_no_speed(obstacle.speed.saturated, speed));
+            // What is out of sight is no reason to go faster: no time that passes gives leave to
+            // gain speed.
             let gaining = i32::from(obstacle.seen_now) * limits.reaction_time();
             assert!(shield::slew_kept(
                 self.last.speed(),
-                speed,
+                twist.speed,
                 limits.acceleration(),
                 gaining
             ));
             let distance = (obstacle.distance.get() * 1000.0) as i32 - obstacle.contact_range;
-            let closing = speed + up(obstacle.speed.value.get());
+            let closing = twist.speed + up(obstacle.speed.value.get());
             assert!(shield::sound(
                 distance.max(0),
                 closing,
                 limits.stop_time(),
-                speed == 0
+                twist.speed <= 0
             ));
+            // Beyond the promise, nothing is promised.
+            assert!(!obstacle.speed.saturated || twist.speed <= 0);
         }
     }
 
@@ -310,10 +396,10 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             assert!(belief::unusable_is_refused(range, in_time, usable));
             if let SonarReading::Echo(measured) = reading {
                 let measured = (measured.get() * 1000.0) as i32;
-                assert!(belief::nearer_counts(view.range[i], measured));
+                assert!(belief::nearer_counts(view.hazard[i].range, measured));
             }
-            let reachable = view.clearance[i] + self.ring.sonars()[i].contact_range;
-            assert!(belief::reachable_is_nearer(view.range[i], reachable));
+            let loss = self.ring.sonars()[i].contact_range + up(self.config.range_error);
+            assert_eq!(view.hazard[i].clearance, view.hazard[i].range - loss);
         }
     }
 }

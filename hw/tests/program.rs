@@ -209,7 +209,7 @@ fn last_stop(log: &log::Log) -> Option<&str> {
         .rev()
         .find_map(|(_, record)| match record {
             Record::Tick { told, .. } | Record::Halt { told, .. } => Some(told),
-            Record::Origin { .. } | Record::Event { .. } => None,
+            Record::Origin { .. } | Record::Reset { .. } | Record::Event { .. } => None,
         });
     told.and_then(|told| told.stop.as_deref())
 }

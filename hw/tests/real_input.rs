@@ -17,7 +17,7 @@ use sidestep::quantity::Instant;
 use sidestep_hw::base::{self, Base};
 use sidestep_hw::config::{self, RobotConfig};
 use sidestep_hw::log;
-use sidestep_hw::pilot::{Pilot, kind_of, settings};
+use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_hw::replay::{self, Columns, Table};
 use sidestep_sim::base::Activity;
 use sidestep_sim::eth;
@@ -391,7 +391,7 @@ fn tick_on_every_packet(writes: &[Vec<u8>]) -> Packets {
                 packets.ticks += 1;
                 *packets.modes.entry(decision.mode).or_default() += 1;
                 if let Some(reason) = decision.stop {
-                    *packets.stops.entry(kind_of(reason)).or_default() += 1;
+                    *packets.stops.entry(reason.row().cause).or_default() += 1;
                     assert_eq!(decision.command.speed(), 0);
                 }
                 packets.greatest_speed = packets.greatest_speed.max(decision.command.speed());

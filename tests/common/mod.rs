@@ -14,8 +14,9 @@ use sidestep::observation::{
 };
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
+use sidestep::ring::Ring;
 use sidestep::track::Obstacle;
-use sidestep::view::{GoalView, Pose, View};
+use sidestep::view::{Class, GoalView, Hazard, Pose, View};
 use std::f32::consts::PI;
 
 #[path = "../../fuzz/targets/settings.rs"]
@@ -43,6 +44,11 @@ pub fn cases(usual: u32) -> ProptestConfig {
 /// The Pioneer preset.
 pub fn pioneer() -> Config {
     Config::new(preset::PIONEER_3DX).expect("the preset is good")
+}
+
+/// The Pioneer preset for a robot with `N` sonars, and its ring.
+pub fn pioneer_with<const N: usize>() -> (Config, Ring<N>) {
+    settings::fitted(&pioneer())
 }
 
 /// Any `f32`: numbers as sensors give them, values where something changes, any bit pattern.
@@ -206,48 +212,73 @@ pub fn base() -> impl Strategy<Value = BaseStatus> {
     })
 }
 
+/// Anything that a sonar may be believed to have in front of it.
+pub fn hazard() -> impl Strategy<Value = Hazard> {
+    let range = prop_oneof![4 => 0..5_000, 1 => 0..1_000_000];
+    let clearance = prop_oneof![6 => -500..5_000, 1 => -1_000_000..1_000_000];
+    let age = prop_oneof![2 => Just(0), 4 => 0..500, 1 => 0..=10_000];
+    let way = || prop_oneof![2 => Just(0), 4 => 0..200, 1 => 0..=10_000];
+    let turned = prop_oneof![2 => Just(0), 4 => 0..500, 1 => 0..=10_000];
+    let class = prop_oneof![Just(Class::Still), Just(Class::Unknown)];
+    let seldom = || prop::bool::weighted(0.02);
+    let flags = (seldom(), seldom());
+    (range, clearance, age, [way(), way()], turned, class, flags).prop_map(
+        |(range, clearance, age, way, turned, class, (too_fast, stuck))| Hazard {
+            range,
+            clearance,
+            age,
+            way,
+            turned,
+            class,
+            too_fast,
+            stuck,
+        },
+    )
+}
+
 /// Any view that a robot with `N` sonars can have, of any time.
 pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
     let pose = (point(), angle());
     let goal = (angle(), prop_oneof![0.0_f32..10.0, 0.0_f32..2e4]);
     let readings = UniformArrayStrategy::<_, [SonarReading; N]>::new(reading());
-    let ranges = || prop_oneof![4 => 0..5_000, 1 => 0..1_000_000];
-    let ranges = UniformArrayStrategy::<_, [i32; N]>::new(ranges());
-    let clearances = || prop_oneof![4 => -500..5_000, 1 => -1_000_000..1_000_000];
-    let clearances = UniformArrayStrategy::<_, [i32; N]>::new(clearances());
-    let sonars = (readings, ranges, clearances);
+    let hazards = UniformArrayStrategy::<_, [Hazard; N]>::new(hazard());
+    let sonars = (readings, hazards);
     let obstacle = proptest::option::of(obstacle());
     let ages = prop_oneof![0..500_u64, 0..5_000_u64];
-    let motion = (between(-10.0, 10.0), 0..100_000_u64, ages);
-    (
-        pose,
-        motion,
-        goal,
-        sonars,
-        obstacle,
-        [length(), length()],
-        base(),
-    )
-        .prop_map(|(pose, motion, goal, sonars, obstacle, room, base)| View {
-            now: Instant(motion.1),
+    let rates = prop_oneof![4 => -1.0_f32..1.0, 1 => between(-20.0, 20.0)];
+    let motion = (between(-10.0, 10.0), rates, 0..100_000_u64, ages);
+    let lengths = ([length(), length()], [length(), length()]);
+    (pose, motion, goal, sonars, obstacle, lengths, base()).prop_map(
+        |(
+            pose,
+            (speed, turn_rate, now, odometry_age),
+            goal,
+            (sonar, hazard),
+            obstacle,
+            (room, beside),
+            base,
+        )| View {
+            now: Instant(now),
             pose: Pose {
                 position: pose.0,
                 heading: pose.1,
             },
-            speed: motion.0,
-            odometry_age: motion.2,
+            speed,
+            turn_rate,
+            odometry_age,
             goal: GoalView {
                 heading: goal.0,
                 distance: goal.1,
             },
-            sonar: sonars.0,
-            range: sonars.1,
-            clearance: sonars.2,
+            sonar,
+            hazard,
             obstacle,
             room,
+            beside,
             base,
             guard: None,
-        })
+        },
+    )
 }
 
 /// A time near `now`: before it, the same, or after it, by milliseconds or by ages.
