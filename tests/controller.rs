@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use sidestep::avoid::Avoid;
 use sidestep::config::{Config, FIELDS, Parameters};
 use sidestep::controller::{Controller, Decision};
-use sidestep::failsafe::{Action, StopReason};
+use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::Observation;
 use sidestep::preset;

@@ -431,7 +431,7 @@ fn a_host_that_hangs_is_stopped_by_the_watchdog_and_not_before() {
 fn a_link_lost_before_the_log_began_is_no_parting() {
     let config = RobotConfig::default();
     let shared = common::SharedLog::default();
-    let mut pilot = Pilot::<Avoid, 16>::new(
+    let mut pilot = Pilot::<_, 16>::new(
         config,
         [4.0, 0.0],
         settings(&config, false, None),

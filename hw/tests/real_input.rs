@@ -408,7 +408,7 @@ fn tick_on_every_packet(writes: &[Vec<u8>]) -> Packets {
 fn pilot_on(writes: &[Vec<u8>]) -> (u64, u64) {
     let config = RobotConfig::default();
     let shared = SharedLog::default();
-    let mut pilot = Pilot::<Avoid, 16>::new(
+    let mut pilot = Pilot::<_, 16>::new(
         config,
         [4.0, 0.0],
         settings(&config, false, None),
