@@ -903,7 +903,7 @@ const ADVICE_MAX: Advice = Advice {
 fn whole(advice: Advice) -> Option<Twist> {
     let sensible =
         advice.speed.abs() <= ADVICE_MAX.speed && advice.turn_rate.abs() <= ADVICE_MAX.turn_rate;
-    sensible.then(|| Twist {
+    sensible.then_some(Twist {
         speed: (advice.speed * 1000.0) as i32,
         turn_rate: (advice.turn_rate * 1000.0) as i32,
     })

@@ -426,7 +426,10 @@ impl EchoMemory {
             self.agreed = self.agreed.saturating_add(1);
             // From time to time the comparison begins anew, or the robot's own way would explain
             // more and more.
-            if self.agreed % (config.still_samples as u32).max(1) == 0 {
+            if self
+                .agreed
+                .is_multiple_of((config.still_samples as u32).max(1))
+            {
                 self.anchor = Some(echo);
             }
         } else {
@@ -458,7 +461,6 @@ impl EchoMemory {
         let hold_time = milliseconds(config.hold_time);
         let new = |range| {
             let late = elapsed(look.taken_at, look.now);
-            let point = sonar.position + sonar.axis * (range as f32 / 1000.0);
             Held {
                 echo: Echo {
                     range,
@@ -466,7 +468,9 @@ impl EchoMemory {
                     odometer: look.odometer,
                 },
                 lag: [way(config.speed_max, late), way(config.turn_rate_max, late)],
-                place: look.pose.map(|pose| pose.to_world(point)),
+                place: look.pose.map(|pose| {
+                    pose.to_world(sonar.position + sonar.axis * (range as f32 / 1000.0))
+                }),
                 farther: 0,
                 counted: look.taken_at,
             }

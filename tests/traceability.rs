@@ -166,3 +166,45 @@ fn every_harness_is_in_the_ledger() {
         .collect();
     assert!(unproved.is_empty(), "{unproved:#?}");
 }
+
+/// The table of fail-safe actions as Markdown.
+fn failsafe_table() -> String {
+    let yes = |is: bool| if is { "yes" } else { "no" };
+    let mut text = String::from(
+        "| cause | action | latches in time | may turn | clears when | told |\n\
+         |---|---|---|---|---|---|\n",
+    );
+    for row in sidestep::failsafe::table() {
+        text += &format!(
+            "| {} | {} | {} | {} | {} | {} |\n",
+            row.cause,
+            row.action,
+            yes(row.latches_in_time),
+            yes(row.may_turn),
+            row.clears,
+            row.told
+        );
+    }
+    text
+}
+
+/// The chapter shows what the code does. With `SIDESTEP_WRITE_TABLES` set, the chapter is written
+/// anew instead.
+#[test]
+fn failsafe_table_is_the_codes() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/spec/failsafe.md");
+    let chapter = std::fs::read_to_string(path).expect("the chapter");
+    let (before, rest) = chapter
+        .split_once("<!-- table -->\n")
+        .expect("the table begins");
+    let (table, after) = rest.split_once("<!-- /table -->").expect("the table ends");
+    if std::env::var_os("SIDESTEP_WRITE_TABLES").is_some() {
+        let chapter = format!(
+            "{before}<!-- table -->\n{}<!-- /table -->{after}",
+            failsafe_table()
+        );
+        std::fs::write(path, chapter).expect("the chapter is written");
+    } else {
+        assert_eq!(table.trim(), failsafe_table().trim());
+    }
+}

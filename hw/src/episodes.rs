@@ -8,7 +8,6 @@ use crate::draw::{Picture, Stop, draw};
 use crate::pilot::{Pilot, settings, usual_law};
 use crate::session::{Output, Settings};
 use sidestep::arcos::{BaseParameters, command};
-use sidestep::avoid::Avoid;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
 use sidestep::quantity::OutOfRange;

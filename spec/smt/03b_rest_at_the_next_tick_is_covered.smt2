@@ -1,0 +1,63 @@
+; THEOREM    03b: recursive feasibility: whatever was admitted, rest at the next tick is covered
+;            by the same guard.
+; ASSUMED    The guard was satisfied at one tick; at the next, tau <= eps later, the robot is told
+;            to rest, and that takes effect by eps after the first.
+; CONCLUDED  At each instant of braking, down to rest, the state is safe, without a new guard.
+; SOURCE     Mitsch, Ghorbal, Vogelbacher, Platzer, IJRR 36(12), 2017, Theorem 2 (braking is
+;            always admitted); spec/shield.md, meaning of eps.
+; TWIN       the reaction time is counted from the tick that asks for rest.
+; SOLVERS    z3
+(set-info :status unsat)
+(set-logic QF_NRA)
+
+; Symbols
+(declare-const b Real)        ; least braking, told to rest
+(declare-const V Real)        ; greatest speed of the thing's class
+(declare-const kappa Real)    ; closing cosine
+(declare-const s Real)        ; robot's own way since the thing was seen
+(declare-const age Real)      ; time since the thing was seen
+(declare-const d Real)        ; clearance when the thing was seen
+(declare-const w Real)        ; greatest speed until the robot begins to brake
+(declare-const tau Real)      ; time of the next tick
+(declare-const te Real)       ; when the command to rest takes effect
+(declare-const xe Real)       ; way until then
+(declare-const ve Real)       ; speed then
+(declare-const tb Real)       ; time spent braking
+(declare-const xb Real)       ; way while braking
+(declare-const v2 Real)       ; speed after braking
+(declare-const eps Real)      ; reaction time
+; Formulas
+(define-fun way_to_rest ((w Real)) Real (+ (* w eps) (/ (* w w) (* 2 b))))
+(define-fun time_to_rest ((w Real)) Real (+ eps (/ w b)))
+(define-fun need ((w Real)) Real
+  (+ (* kappa (+ s (way_to_rest w))) (* V (+ age (time_to_rest w)))))
+(define-fun safe_need ((v Real)) Real (+ (/ (* kappa v v) (* 2 b)) (/ (* V v) b)))
+
+; Assumptions
+(assert (> b 0))
+(assert (>= V 0))
+(assert (<= 0 kappa 1))
+(assert (>= s 0))
+(assert (>= age 0))
+(assert (>= w 0))
+(assert (>= tau 0))
+(assert (>= te 0))
+(assert (>= xe 0))
+(assert (>= ve 0))
+(assert (>= tb 0))
+(assert (>= xb 0))
+(assert (>= v2 0))
+(assert (> eps 0))
+(assert (<= (need w) d))
+(assert (<= tau eps))
+(assert (<= tau te))
+(assert (<= te eps))
+(assert (<= xe (* w te)))
+(assert (<= ve w))
+(assert (<= v2 ve))
+(assert (<= (* b tb) (- ve v2)))                  ; braking at b or harder: 01b, 01c
+(assert (<= (* 2 b xb) (- (* ve ve) (* v2 v2))))
+
+; Conclusion, negated
+(assert (not (<= (safe_need v2) (- d (* kappa (+ s xe xb)) (* V (+ age te tb))))))
+(check-sat)

@@ -1,0 +1,48 @@
+; THEOREM    05c: losing sight never raises the admitted speed.
+; ASSUMED    The guard is satisfied; one thing changes, and only for the better: the thing was
+;            seen more recently: the age is age1 and the way since then s1.
+; CONCLUDED  What is admitted out of sight was admitted when the thing was seen.
+; SOURCE     own; spec/shield.md SH.5, ER-X1.
+; TWIN       the age of the other look is greater.
+; SOLVERS    z3 cvc5
+(set-info :status unsat)
+(set-logic QF_NRA)
+
+; Symbols
+(declare-const A Real)        ; greatest acceleration
+(declare-const b Real)        ; least braking, told to rest
+(declare-const eps Real)      ; reaction time
+(declare-const V Real)        ; greatest speed of the thing's class
+(declare-const kappa Real)    ; closing cosine
+(declare-const s Real)        ; robot's own way since the thing was seen
+(declare-const age Real)      ; time since the thing was seen
+(declare-const d Real)        ; clearance when the thing was seen
+(declare-const c Real)        ; commanded speed
+(declare-const u Real)        ; bound of the robot's present speed
+(declare-const s1 Real)       ; way since a more recent look
+(declare-const age1 Real)     ; age of a more recent look
+; Formulas
+(define-fun way_to_rest ((w Real)) Real (+ (* w eps) (/ (* w w) (* 2 b))))
+(define-fun time_to_rest ((w Real)) Real (+ eps (/ w b)))
+(define-fun need ((kappa Real) (V Real) (s Real) (age Real) (w Real)) Real
+  (+ (* kappa (+ s (way_to_rest w))) (* V (+ age (time_to_rest w)))))
+(define-fun fastest ((c Real) (u Real)) Real (ite (>= (+ c (* A eps)) u) (+ c (* A eps)) u))
+
+; Assumptions
+(assert (>= A 0))
+(assert (> b 0))
+(assert (> eps 0))
+(assert (>= V 0))
+(assert (<= 0 kappa 1))
+(assert (>= s 0))
+(assert (>= age 0))
+(assert (>= c 0))
+(assert (>= u 0))
+(assert (>= s1 0))
+(assert (>= age1 0))
+(assert (<= (need kappa V s age (fastest c u)) d))
+(assert (and (<= s1 s) (<= age1 age)))
+
+; Conclusion, negated
+(assert (not (<= (need kappa V s1 age1 (fastest c u)) d)))
+(check-sat)

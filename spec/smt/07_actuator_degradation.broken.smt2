@@ -1,0 +1,57 @@
+; BROKEN     Twin of 07_actuator_degradation.smt2: the guard is judged with the full strength b.
+(set-info :status sat)
+(set-logic QF_NRA)
+
+; Symbols
+(declare-const b Real)        ; full braking
+(declare-const share Real)    ; least share of it that is declared
+(declare-const delta Real)    ; the share there is
+(declare-const eps Real)      ; reaction time
+(declare-const V Real)        ; greatest speed of the thing's class
+(declare-const kappa Real)    ; closing cosine
+(declare-const s Real)        ; robot's own way since the thing was seen
+(declare-const age Real)      ; time since the thing was seen
+(declare-const d Real)        ; clearance when the thing was seen
+(declare-const w Real)        ; greatest speed until the robot begins to brake
+(declare-const te Real)       ; when the command to rest takes effect
+(declare-const xe Real)       ; way until then
+(declare-const ve Real)       ; speed then
+(declare-const tb Real)       ; time spent braking
+(declare-const xb Real)       ; way while braking
+(declare-const v2 Real)       ; speed after braking
+; Formulas
+(define-fun judged () Real b)                                ; BROKEN: the share is forgotten
+(define-fun way_to_rest ((w Real)) Real (+ (* w eps) (/ (* w w) (* 2 judged))))
+(define-fun time_to_rest ((w Real)) Real (+ eps (/ w judged)))
+(define-fun need ((w Real)) Real
+  (+ (* kappa (+ s (way_to_rest w))) (* V (+ age (time_to_rest w)))))
+(define-fun safe_need ((v Real)) Real (+ (/ (* kappa v v) (* 2 share b)) (/ (* V v) (* share b))))
+
+; Assumptions
+(assert (> b 0))
+(assert (> share 0))
+(assert (>= delta 0))
+(assert (> eps 0))
+(assert (>= V 0))
+(assert (<= 0 kappa 1))
+(assert (>= s 0))
+(assert (>= age 0))
+(assert (>= w 0))
+(assert (>= te 0))
+(assert (>= xe 0))
+(assert (>= ve 0))
+(assert (>= tb 0))
+(assert (>= xb 0))
+(assert (>= v2 0))
+(assert (and (<= share delta) (<= delta 1)))
+(assert (<= (need w) d))
+(assert (<= te eps))
+(assert (<= xe (* w te)))
+(assert (<= ve w))
+(assert (<= v2 ve))
+(assert (<= (* delta b tb) (- ve v2)))            ; braking at delta b or harder: 01b, 01c
+(assert (<= (* 2 delta b xb) (- (* ve ve) (* v2 v2))))
+
+; Conclusion, negated
+(assert (not (<= (safe_need v2) (- d (* kappa (+ s xe xb)) (* V (+ age te tb))))))
+(check-sat)
