@@ -259,8 +259,14 @@ fn faults() -> Vec<(&'static str, Fault)> {
             *o = in_order(o.now.0 - 1_000, [5.0; 3]);
         }),
         ("motors are disabled", |o| o.base.motors_enabled = false),
-        ("stall or bumper", |o| o.base.stalled = true),
-        ("emergency stop", |o| o.base.emergency_stop = true),
+    ]
+}
+
+/// What latches at once.
+fn grave_faults() -> [(StopReason, Fault); 2] {
+    [
+        (StopReason::Stalled, |o| o.base.stalled = true),
+        (StopReason::EmergencyStop, |o| o.base.emergency_stop = true),
     ]
 }
 
@@ -317,7 +323,7 @@ fn waiting_begins_again() {
     let mut drive = under_way::<3>(pioneer());
     for _ in 0..3 {
         let mut broken = drive.observe();
-        broken.base.stalled = true;
+        broken.base.motors_enabled = false;
         drive.watched.tick(&broken);
         drive.advance();
         for _ in 0..2 {
@@ -327,18 +333,56 @@ fn waiting_begins_again() {
     assert!(drive.tick().command.speed() > 0);
 }
 
-/// A stop from outside is a stop like any other.
+/// A lost link is a stop like any other; what the operator asked for holds until it is reset, and so
+/// does what latches at once.
 //= shield.INV-4
+//= failsafe.INV-5
 #[test]
 fn halt_is_obeyed() {
     let mut drive = under_way::<3>(pioneer());
-    for reason in [StopReason::LinkLost, StopReason::Operator] {
-        let now = Instant(drive.now);
-        drive.watched.halt(reason, now);
+    let reason = StopReason::LinkLost;
+    drive.watched.halt(reason, Instant(drive.now));
+    drive.advance();
+    assert_eq!(drive.tick().stop, Some(reason));
+    assert_eq!(drive.tick().stop, Some(reason));
+    assert!(drive.tick().command.speed() > 0);
+
+    let reason = StopReason::Operator;
+    drive.watched.halt(reason, Instant(drive.now));
+    holds_until_reset(&mut drive, reason);
+}
+
+/// Clear ticks do not end a stop, and after a reset as many are awaited as ever.
+fn holds_until_reset(drive: &mut Drive<Told, 3>, reason: StopReason) {
+    drive.advance();
+    for _ in 0..50 {
+        assert_eq!(drive.tick().stop, Some(reason));
+    }
+    drive.watched.reset();
+    assert_eq!(drive.tick().stop, Some(reason));
+    assert_eq!(drive.tick().stop, Some(reason));
+    assert!(drive.tick().command.speed() > 0);
+}
+
+//= failsafe.INV-5
+#[test]
+fn grave_faults_hold_until_they_are_reset() {
+    for (reason, break_it) in grave_faults() {
+        let mut drive = under_way::<3>(pioneer());
+        let mut broken = drive.observe();
+        break_it(&mut broken);
+        assert_eq!(drive.watched.tick(&broken).0.stop, Some(reason));
+        holds_until_reset(&mut drive, reason);
+        // What is still wrong when it is reset latches again.
+        let mut broken = drive.observe();
+        break_it(&mut broken);
+        drive.watched.tick(&broken);
         drive.advance();
-        assert_eq!(drive.tick().stop, Some(reason));
-        assert_eq!(drive.tick().stop, Some(reason));
-        assert!(drive.tick().command.speed() > 0);
+        drive.watched.reset();
+        let mut broken = drive.observe();
+        break_it(&mut broken);
+        drive.watched.tick(&broken);
+        holds_until_reset(&mut drive, reason);
     }
 }
 
@@ -365,12 +409,17 @@ fn invalid_advice_stops() {
 #[test]
 fn limits_are_named() {
     // A wall beside the way: no obstacle to the law, but one to the clearance.
-    let mut drive = under_way::<3>(pioneer());
-    let mut beside = drive.observe();
-    beside.sonar[1].as_mut().expect("a sample").range = 0.8;
-    let decision = drive.watched.tick(&beside).0;
-    assert_eq!(decision.limit, Some(Limit::Clearance { sonar: 1 }));
-    assert!((1..400).contains(&decision.command.speed()));
+    let mut drive = Drive::<_, 3>::new(pioneer(), Told::new(AHEAD), 100.0, 0.0);
+    for tick in 0..60 {
+        let mut beside = drive.observe();
+        beside.sonar[1].as_mut().expect("a sample").range = 0.45;
+        let decision = drive.watched.tick(&beside).0;
+        drive.advance();
+        if tick >= 40 {
+            assert_eq!(decision.limit, Some(Limit::Clearance { sonar: 1 }));
+            assert!((1..400).contains(&decision.command.speed()));
+        }
+    }
     // Someone who comes.
     let mut drive = Drive::<_, 3>::new(pioneer(), Told::new(AHEAD), 3.0, 0.4);
     drive.set_off();

@@ -206,8 +206,10 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     /// # Panics
     /// If it is still latched.
     pub fn reset(&mut self) {
+        if self.controller.shield().is_latched() {
+            self.sound_ticks = 0;
+        }
         self.controller.reset();
-        self.sound_ticks = 0;
         assert!(!self.controller.shield().is_latched());
     }
 
