@@ -91,19 +91,19 @@ impl<const N: usize> Ring<N> {
                 face: [-1000, 1000],
             },
         }; N];
-        let cruise = Limits::new(config).required_clearance(millimetres_up(config.cruise_speed))
-            + millimetres_up(config.range_error);
         for (sonar, placement) in sonars.iter_mut().zip(placements) {
             *sonar = Sonar::new(placement, config)?;
-            if sonar.forward {
-                let stop = (cruise + sonar.contact_range) as f32 / 1000.0;
-                let (safe, most) = (config.safe_distance, config.sonar_range_max);
-                in_range("safe_distance", safe, stop, most, "m")?;
-            }
         }
         let gap_max = config.blind_angle_max;
         let gap = widest_gap(&sonars, Angle::ZERO, config);
         in_range("gap between sonars ahead", gap, 0.0, gap_max, "rad")?;
+        let cruise = Limits::new(config).required_clearance(millimetres_up(config.cruise_speed))
+            + millimetres_up(config.range_error);
+        for sonar in sonars.iter().filter(|sonar| sonar.forward) {
+            let stop = (cruise + sonar.contact_range) as f32 / 1000.0;
+            let (safe, most) = (config.safe_distance, config.sonar_range_max);
+            in_range("safe_distance", safe, stop, most, "m")?;
+        }
         let looks_back = widest_gap(&sonars, Angle::HALF_TURN, config) <= gap_max;
         Ok(Self { sonars, looks_back })
     }
