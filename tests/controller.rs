@@ -408,8 +408,13 @@ fn invalid_advice_stops() {
 /// A robot that is slowed says what slows it.
 #[test]
 fn limits_are_named() {
-    // A wall beside the way: no obstacle to the law, but one to the clearance.
-    let mut drive = Drive::<_, 3>::new(pioneer(), Told::new(AHEAD), 100.0, 0.0);
+    // Someone walks beside the robot: no obstacle to the law, but one to the clearance.
+    let config = Config::new(Parameters {
+        still_samples: 100.0,
+        ..preset::PIONEER_3DX
+    })
+    .expect("a configuration");
+    let mut drive = Drive::<_, 3>::new(config, Told::new(AHEAD), 100.0, 0.0);
     let mut limits = Vec::new();
     for tick in 0..60 {
         let mut beside = drive.observe();

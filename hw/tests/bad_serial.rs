@@ -373,8 +373,13 @@ fn an_emergency_stop_is_obeyed_shown_and_not_undone() {
     rig.wait(5000);
     rig.simulation.robot_mut().press_e_stop(false);
     assert!(!rig.run_until(rig.now() + 10_000, |rig| !rig.at_rest()));
-    assert_eq!(latest_stop(&rig), Some(StopReason::MotorsDisabled));
+    assert_eq!(latest_stop(&rig), Some(StopReason::EmergencyStop));
     assert!(!rig.simulation.robot().motors_enabled());
+    // A reset does not switch the motors on.
+    let now = rig.now();
+    rig.pilot.reset(now);
+    assert!(!rig.run_until(now + 10_000, |rig| !rig.at_rest()));
+    assert_eq!(latest_stop(&rig), Some(StopReason::MotorsDisabled));
     let log = rig.finish();
     assert!(logged(&log, "the emergency stop is pressed"));
 }
