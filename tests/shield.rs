@@ -492,6 +492,31 @@ proptest! {
     }
 }
 
+/// Someone 1 m ahead who comes at 800 mm/s leaves less than 200 mm/s for contact not to be possible
+/// within a second, and it is said that they do.
+//= shield.INV-8
+#[test]
+fn time_to_contact_limits_the_speed() {
+    let (config, ring) = pioneer_with::<8>();
+    let guard = Guard::new(&config);
+    let ahead = |speed: i32| Twist {
+        speed,
+        turn_rate: 0,
+    };
+    let surroundings = Surroundings {
+        hazard: &[FAR; 8],
+        ring: &ring,
+        motion: Motion::REST,
+        ahead: Some((1000, 800)),
+    };
+    let admission = guard.admissible(ahead(400), ahead(400), [100; 2], &surroundings);
+    assert_eq!(admission.limit, Some(Limit::ContactTime));
+    let speed = admission.twist.speed;
+    // In 64ths of 400 mm/s.
+    assert!((190..200).contains(&speed), "{speed}");
+    assert!(promise::sound(1000, speed + 800, 1000, speed == 0));
+}
+
 /// A hazard that is mostly too far away to matter.
 fn far_or_any_hazard() -> impl Strategy<Value = Hazard> {
     prop_oneof![12 => Just(FAR), 1 => hazard()]

@@ -16,11 +16,10 @@ use sidestep::arcos::{
     HostCommand, Identity, MAX_FRAME, Receiver, SonarReading, SonarReadings, StandardInformation,
     Tail, command,
 };
-use sidestep::avoid::Avoid;
 use sidestep::failsafe::StopReason;
 use sidestep_hw::config::RobotConfig;
 use sidestep_hw::log::{Log, Record};
-use sidestep_hw::pilot::{Pilot, settings};
+use sidestep_hw::pilot::{Pilot, UsualLaw, settings};
 use sidestep_sim::robot::{ArcosRobot, BAUDS, Session};
 use sidestep_sim::scenario::Scenario;
 use sidestep_sim::{STEP_MS, World};
@@ -41,16 +40,16 @@ fn open_floor() -> Scenario {
     scenario
 }
 
-fn rig(scenario: &Scenario) -> Rig<Avoid> {
+fn rig(scenario: &Scenario) -> Rig<UsualLaw<16>> {
     let config = RobotConfig::default();
-    Rig::new(scenario, &config, Avoid::new(config.core))
+    Rig::new(scenario, &config, common::usual(&config))
 }
 
 /// A rig over a serial line whose rate has to be found out.
-fn serial_rig(scenario: &Scenario) -> Rig<Avoid> {
+fn serial_rig(scenario: &Scenario) -> Rig<UsualLaw<16>> {
     let config = RobotConfig::default();
     let settings = settings(&config, true, None);
-    Rig::with_settings(scenario, &config, Avoid::new(config.core), settings)
+    Rig::with_settings(scenario, &config, common::usual(&config), settings)
 }
 
 fn frame(command: HostCommand<'_>) -> Vec<u8> {
@@ -58,7 +57,7 @@ fn frame(command: HostCommand<'_>) -> Vec<u8> {
     command.encode(&mut buffer).unwrap().as_bytes().to_vec()
 }
 
-fn latest_stop(rig: &Rig<Avoid>) -> Option<StopReason> {
+fn latest_stop(rig: &Rig<UsualLaw<16>>) -> Option<StopReason> {
     rig.pilot.latest().and_then(|decision| decision.stop)
 }
 
@@ -290,7 +289,7 @@ fn a_wrong_baud_rate_is_reported_and_moves_nothing() {
     scenario.robot.host_baud = 115_200;
     let config = RobotConfig::default();
     let settings = settings(&config, true, Some(9600));
-    let mut rig = Rig::with_settings(&scenario, &config, Avoid::new(config.core), settings);
+    let mut rig = Rig::with_settings(&scenario, &config, common::usual(&config), settings);
     assert!(!rig.drive(20_000));
     assert!(rig.was_shown("no robot answers at any of [9600] baud"));
     assert!(rig.at_rest());
@@ -374,8 +373,13 @@ fn an_emergency_stop_is_obeyed_shown_and_not_undone() {
     rig.wait(5000);
     rig.simulation.robot_mut().press_e_stop(false);
     assert!(!rig.run_until(rig.now() + 10_000, |rig| !rig.at_rest()));
-    assert_eq!(latest_stop(&rig), Some(StopReason::MotorsDisabled));
+    assert_eq!(latest_stop(&rig), Some(StopReason::EmergencyStop));
     assert!(!rig.simulation.robot().motors_enabled());
+    // A reset does not switch the motors on.
+    let now = rig.now();
+    rig.pilot.reset(now);
+    assert!(!rig.run_until(now + 10_000, |rig| !rig.at_rest()));
+    assert_eq!(latest_stop(&rig), Some(StopReason::MotorsDisabled));
     let log = rig.finish();
     assert!(logged(&log, "the emergency stop is pressed"));
 }

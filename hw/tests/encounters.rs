@@ -17,7 +17,7 @@ use sidestep::view::{Memory, View};
 use sidestep_hw::base::{self, Base};
 use sidestep_hw::config::RobotConfig;
 use sidestep_hw::demo::{goal_from_start, run_in_memory};
-use sidestep_hw::pilot::settings;
+use sidestep_hw::pilot::{UsualLaw, settings};
 use sidestep_hw::session::{Event, Output, Session};
 use sidestep_sim::STEP_MS;
 use sidestep_sim::scenario::{Knobs, Scenario};
@@ -117,8 +117,8 @@ fn sweep<L: Law<16>>(
     figures
 }
 
-fn s1(_seed: u64, config: &RobotConfig) -> Avoid {
-    Avoid::new(config.core)
+fn s1(_seed: u64, config: &RobotConfig) -> UsualLaw<16> {
+    common::usual(config)
 }
 
 #[test]
@@ -295,17 +295,17 @@ fn with_broken_sonar(
     seed: u64,
     sonar: usize,
     failure: Failure,
-) -> Rig<Avoid> {
+) -> Rig<UsualLaw<16>> {
     let config = RobotConfig::default();
     let scenario = inconsiderate(name, 0.1)
         .randomised(seed, speed_limit)
         .unwrap();
-    let mut rig = Rig::new(&scenario, &config, Avoid::new(config.core));
+    let mut rig = Rig::new(&scenario, &config, common::usual(&config));
     break_sonar(&mut rig, sonar, failure);
     rig
 }
 
-fn break_sonar(rig: &mut Rig<Avoid>, sonar: usize, failure: Failure) {
+fn break_sonar(rig: &mut Rig<UsualLaw<16>>, sonar: usize, failure: Failure) {
     let faults = Faults {
         failure: Some(failure),
         ..Faults::default()
@@ -365,7 +365,7 @@ fn a_sonar_that_falls_silent_stops_the_robot_and_says_so() {
     // Nobody is there: nothing but the silence stops this robot.
     scenario.world = sidestep_sim::World::new();
     for sonar in 0..16 {
-        let mut rig = Rig::new(&scenario, &config, Avoid::new(config.core));
+        let mut rig = Rig::new(&scenario, &config, common::usual(&config));
         rig.drive_to_cruise();
         break_sonar(&mut rig, sonar, Failure::Silent);
         let silent_at = rig.now();

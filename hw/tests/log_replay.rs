@@ -4,7 +4,6 @@ mod common;
 
 use common::{Random, Rig, inconsiderate};
 use serde_json::Value;
-use sidestep::avoid::Avoid;
 use sidestep::config::{Config, FIELDS, Parameters};
 use sidestep_hw::config::{HeadingSource, RobotConfig, Sonars, parse};
 use sidestep_hw::log::{self, Header, Log, Record};
@@ -15,7 +14,7 @@ fn run(config: &RobotConfig) -> Vec<u8> {
     let mut rig = Rig::new(
         &inconsiderate("fig12-crossing", 0.1),
         config,
-        Avoid::new(config.core),
+        common::usual(config),
     );
     rig.wait(6000);
     rig.to_host = Box::new(|_, _| Vec::new());

@@ -11,7 +11,6 @@ use nalgebra::Vector2;
 use sidestep::arcos::{
     BaseParameters, Identity, PacketError, Receiver, StandardInformation, command,
 };
-use sidestep::avoid::Avoid;
 use sidestep::controller::Controller;
 use sidestep::quantity::Instant;
 use sidestep_hw::base::{self, Base};
@@ -205,7 +204,7 @@ fn drive_among(path: &Path) -> Contacts {
     let mut start = 0.0;
     while let Ok(mut scenario) = Scenario::hotel(path, start, &knobs) {
         scenario.time_limit_ms = scenario.time_limit_ms.min(60_000);
-        let mut rig = Rig::new(&scenario, &config, Avoid::new(config.core));
+        let mut rig = Rig::new(&scenario, &config, common::usual(&config));
         let people = rig.simulation.world().people().len();
         let mut before: Vec<VecDeque<Option<Point>>> = vec![VecDeque::new(); people];
         // Who is in contact, and what kind of contact it was while moving, if it ever was.
@@ -367,7 +366,7 @@ fn tick_on_every_packet(writes: &[Vec<u8>]) -> Packets {
     let config = RobotConfig::default();
     let mut base = Base::<16>::new(BaseParameters::P3DX_SH, &config);
     let ring = base::ring::<16>(&config).unwrap();
-    let law = Avoid::new(config.core);
+    let law = common::usual(&config);
     let mut controller = Controller::new(config.core, ring, law, Vector2::new(4.0, 0.0)).unwrap();
     let mut receiver = Receiver::new();
     let mut packets = Packets::default();
@@ -462,7 +461,7 @@ fn a_session_of_our_own_is_heard() {
     let mut scenario = Scenario::named("lab", &Knobs::default()).unwrap();
     scenario.robot.hollow_sip = true;
     let config = RobotConfig::default();
-    let mut rig = Rig::new(&scenario, &config, Avoid::new(config.core));
+    let mut rig = Rig::new(&scenario, &config, common::usual(&config));
     let writes = Rc::new(RefCell::new(Vec::new()));
     let written = Rc::clone(&writes);
     rig.to_host = Box::new(move |bytes, _| {

@@ -3,10 +3,11 @@
 #![allow(dead_code)] // Each test uses some of it.
 
 use sidestep::law::Law;
+use sidestep_hw::base;
 use sidestep_hw::config::RobotConfig;
 use sidestep_hw::demo::goal_from_start;
 use sidestep_hw::log::{self, Log, Record};
-use sidestep_hw::pilot::{Pilot, settings};
+use sidestep_hw::pilot::{Pilot, UsualLaw, settings, usual_law};
 use sidestep_hw::replay;
 use sidestep_hw::session::{Output, Settings};
 use sidestep_sim::scenario::{Knobs, Scenario};
@@ -45,6 +46,12 @@ pub fn inconsiderate(name: &str, dropout: f64) -> Scenario {
     };
     knobs.sonar_faults.dropout = dropout;
     Scenario::named(name, &knobs).expect(name)
+}
+
+/// The law that drives unless another is asked for.
+pub fn usual(config: &RobotConfig) -> UsualLaw<16> {
+    let ring = base::ring(config).expect("the ring fits the configuration");
+    usual_law(config.core, ring)
 }
 
 /// Contacts in which the robot moved: what must not be.
