@@ -79,7 +79,12 @@ fn table_is_complete() {
     let causes: BTreeSet<_> = table().map(|row| row.cause).collect();
     assert_eq!(causes.len(), table().count());
     assert_eq!(causes.len(), StopReason::EACH.len() + 2);
-    for action in [Action::Limit, Action::Slow, Action::Stop, Action::LatchedStop] {
+    for action in [
+        Action::Limit,
+        Action::Slow,
+        Action::Stop,
+        Action::LatchedStop,
+    ] {
         assert!(table().any(|row| row.action == action), "{action}");
     }
     // Nothing that is latched, or overdue, lets the robot turn.

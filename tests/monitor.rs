@@ -24,9 +24,14 @@ fn accused(commands: &[i32], delay: usize, braking: f64) -> Option<u64> {
             return Some(now - 1000);
         }
         monitor.told(*command, Instant(now), &limits);
-        assert!(promise::allows_what_was_told(monitor.bound(&limits), *command));
+        assert!(promise::allows_what_was_told(
+            monitor.bound(&limits),
+            *command
+        ));
         for ms in 0..100 {
-            let at = (100 * tick + ms).checked_sub(delay).map_or(0, |heard| heard / 100);
+            let at = (100 * tick + ms)
+                .checked_sub(delay)
+                .map_or(0, |heard| heard / 100);
             let target = f64::from(told[at]);
             let most = f64::from(limits.acceleration()) / 1000.0;
             let least = braking * f64::from(limits.braking()) / 1000.0;
