@@ -113,7 +113,7 @@ parameters! {
     still_samples: "samples", 2.0, 100.0,
         "Readings in a row that must agree with the robot's own motion before a thing counts as still.";
     still_tolerance: "m", 0.005, 0.5,
-        "Readings of a still thing 1 m away scatter by no more than this, nearer by less: three tenths of it, and the rest in proportion.";
+        "Readings of a still thing scatter by no more than this.";
     range_error: "m", 0.0, 0.5,
         "A sonar's range is too long by no more than this.";
     speed_error: "m/s", 0.0, 0.5,

@@ -416,9 +416,7 @@ impl EchoMemory {
             self.agreed = 0;
             self.anchor = None;
         }
-        // Readings scatter in proportion to the range, and a little more.
-        let tolerance =
-            millimetres_up(config.still_tolerance) * (300 + range.min(2_000) * 7 / 10) / 1_000;
+        let tolerance = millimetres_up(config.still_tolerance);
         let anchor = self.anchor.unwrap_or(latest);
         let [least, most] = anchor.approach(&look.odometer, sonar);
         let nearer = anchor.range - range;

@@ -3,10 +3,11 @@
 //! `cargo run --release -p sidestep-hw --example claims -- [SEEDS] [KEY=VALUE …]`, where a key is a
 //! configuration parameter as in the TOML file.
 
-use sidestep::avoid::Avoid;
+use sidestep_hw::base;
 use sidestep_hw::config::{self, RobotConfig};
 use sidestep_hw::demo::{Summary, run_in_memory};
 use sidestep_hw::episodes::moving_again_ms;
+use sidestep_hw::pilot::usual_law;
 use sidestep_sim::Simulation;
 use sidestep_sim::scenario::{Knobs, Scenario};
 use std::error::Error;
@@ -43,7 +44,8 @@ fn ride(
 ) -> Result<(Scenario, Summary, Simulation), Box<dyn Error>> {
     let mut scenario = Scenario::named(name, knobs)?;
     scenario.robot.base.radius = config.core.robot_radius.into();
-    let (summary, simulation) = run_in_memory(&scenario, config, Avoid::new(config.core))?;
+    let law = usual_law(config.core, base::ring(config)?);
+    let (summary, simulation) = run_in_memory(&scenario, config, law)?;
     Ok((scenario, summary, simulation))
 }
 
