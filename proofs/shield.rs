@@ -9,7 +9,7 @@ use sidestep::observation::SonarReading;
 use sidestep::preset;
 use sidestep::ring::Closing;
 use sidestep::shield::{
-    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest, no_tighter,
+    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
 };
 use sidestep::view::{Class, Hazard};
 use sidestep_spec::shield as promise;
@@ -122,7 +122,7 @@ pub fn rest_is_covered_2011() {
 }
 
 /// No configuration needs a longer way than this, mm, or a longer time, ms.
-const MOST: i32 = 800_000;
+const MOST: i32 = 3_000_000;
 
 /// Ways and times to rest do not overflow for any configuration and any speed it may have.
 //= shield.INV-2
@@ -138,8 +138,8 @@ pub fn rest_does_not_overflow() {
         p.reaction_time = kani::any();
         p.cruise_speed = 0.01;
     });
-    let fastest = any_in(0, 12_000);
-    assert!(limits.speed_max() + limits.speed_gain() <= 12_100);
+    let fastest = any_in(0, 23_000);
+    assert!(limits.speed_max() + 2 * limits.speed_gain() + limits.speed_error() <= 23_000);
     let (way, time) = (limits.way_to_rest(fastest), limits.time_to_rest(fastest));
     assert!((0..=MOST).contains(&way));
     assert!((0..=MOST).contains(&time));
@@ -476,24 +476,6 @@ pub fn any_advice_is_limited() {
     kani::cover!(speed > 0 && turn_rate < 0, "a curve");
 }
 
-/// The code's test of the curvature is the invariant's, for advice within the Pioneer preset's
-/// limits; both are the same two products, and more is a property test. That what
-/// is admitted has passed the test is `what_moves_was_admitted`.
-//= shield.INV-13
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-pub fn path_bends_no_tighter() {
-    let advised = twist(any_in(-400, 400), any_in(-1_600, 1_600));
-    let speed = any_in(0, 400);
-    let turn_rate = any_in(-1_600, 1_600);
-    kani::assume(speed.abs() <= advised.speed.abs());
-    kani::assume(turn_rate.abs() <= advised.turn_rate.abs());
-    let admitted = no_tighter(speed, turn_rate, advised);
-    assert!(!admitted || promise::no_tighter(speed, turn_rate, advised.speed, advised.turn_rate));
-    kani::cover!(admitted && speed > 0 && turn_rate < 0, "a curve");
-    kani::cover!(!admitted && speed > 0, "too tight");
-}
-
 /// A search may find anything up to its wish: nothing rests on it.
 pub fn any_found(_steps: u32, wish: i32, _admitted: impl Fn(i32) -> bool) -> i32 {
     let found = kani::any();
@@ -511,8 +493,8 @@ pub fn any_plan(_guard: &Guard, _speed: i32, turn_rate: i32, _motion: &Motion) -
     })
 }
 
-/// What is admitted was admitted for just that command: the guard is asked once more about what
-/// is returned, however the search went.
+/// What is admitted was admitted for just that command: guard and curvature are asked once more
+/// about what is returned, however the search went.
 //= shield.INV-9
 //= shield.INV-13
 #[cfg_attr(kani, kani::proof)]
@@ -544,7 +526,7 @@ pub fn what_moves_was_admitted() {
         && odd_curve(admitted.speed, admitted.turn_rate, advised);
     #[cfg(not(kani))]
     let fits = surroundings.admit(&guard, admitted)
-        && no_tighter(admitted.speed, admitted.turn_rate, advised);
+        && sidestep::shield::no_tighter(admitted.speed, admitted.turn_rate, advised);
     assert!(promise::admitted(admitted.speed, admitted.turn_rate, fits));
     kani::cover!(admitted.speed > 0, "it drives");
     kani::cover!(admitted.speed == 0 && advised.speed > 300, "it does not");

@@ -91,18 +91,19 @@ impl<const N: usize> Ring<N> {
                 face: [-1000, 1000],
             },
         }; N];
-        let cruise = Limits::new(config).required_clearance(millimetres_up(config.cruise_speed));
         for (sonar, placement) in sonars.iter_mut().zip(placements) {
             *sonar = Sonar::new(placement, config)?;
-            if sonar.forward {
-                let stop = (cruise + sonar.contact_range) as f32 / 1000.0;
-                let (safe, most) = (config.safe_distance, config.sonar_range_max);
-                in_range("safe_distance", safe, stop, most, "m")?;
-            }
         }
         let gap_max = config.blind_angle_max;
         let gap = widest_gap(&sonars, Angle::ZERO, config);
         in_range("gap between sonars ahead", gap, 0.0, gap_max, "rad")?;
+        let cruise = Limits::new(config).required_clearance(millimetres_up(config.cruise_speed))
+            + millimetres_up(config.range_error);
+        for sonar in sonars.iter().filter(|sonar| sonar.forward) {
+            let stop = (cruise + sonar.contact_range) as f32 / 1000.0;
+            let (safe, most) = (config.safe_distance, config.sonar_range_max);
+            in_range("safe_distance", safe, stop, most, "m")?;
+        }
         let looks_back = widest_gap(&sonars, Angle::HALF_TURN, config) <= gap_max;
         Ok(Self { sonars, looks_back })
     }
@@ -152,6 +153,13 @@ impl Sonar {
         } else if offset > 0.0 {
             let across = (position.x / offset).clamp(-1.0, 1.0);
             (least, most) = (least.min(across), most.max(across));
+            let face = Angle::radians(math::atan2(position.y, position.x))?;
+            if lies_between(Angle::ZERO, face, heading, config.sonar_half_angle) {
+                most = 1.0;
+            }
+            if lies_between(Angle::HALF_TURN, face, heading, config.sonar_half_angle) {
+                least = -1.0;
+            }
         }
         let closing = Closing {
             ahead: -floor_thousandths(-most),
@@ -168,6 +176,14 @@ impl Sonar {
             closing,
         })
     }
+}
+
+/// A direction lies between that of a sonar's face and those of its cone.
+fn lies_between(direction: Angle, face: Angle, heading: Angle, half_angle: f32) -> bool {
+    let to_direction = direction.minus(face).get();
+    let to_axis = heading.minus(face).get();
+    to_direction >= (to_axis - half_angle).min(0.0)
+        && to_direction <= (to_axis + half_angle).max(0.0)
 }
 
 /// Least and greatest cosine of the directions within `half_angle` of `heading`.

@@ -284,7 +284,8 @@ impl Guard {
     #[must_use]
     pub const fn new(config: &Config) -> Self {
         let limits = Limits::new(config);
-        let top = limits.speed_max + limits.speed_gain();
+        // As fast as the robot may be told, or measured at that speed, and a gain on top.
+        let top = limits.speed_max + 2 * limits.speed_gain() + limits.speed_error;
         let mut rungs = [Rung {
             fastest: 0,
             way: 0,
@@ -658,15 +659,12 @@ impl Shield {
     /// Stops for `reason`: the command is rest from now on.
     fn halt(&mut self, reason: StopReason, now: Instant) -> Option<StopReason> {
         self.clear = 0;
-        if !reason.row().latches_in_time {
-            self.overdue_since = None;
-        } else if self.overdue_since.is_none() {
-            self.overdue_since = Some(now);
-        }
-        let overdue = self
-            .overdue_since
-            .and_then(|since| now.since(since))
-            .is_some_and(|lasted| lasted >= self.guard.limits.latch_time);
+        // Another cause in between does not make what is overdue arrive: only a clear tick does.
+        let overdue = reason.row().latches_in_time && {
+            let since = *self.overdue_since.get_or_insert(now);
+            let lasted = now.since(since).unwrap_or(0);
+            lasted >= self.guard.limits.latch_time
+        };
         if !self.latched {
             self.stop = Some(reason);
             // Before everything was there for the first time, nothing has been lost.
@@ -815,7 +813,11 @@ impl Shield {
     ) -> Verdict {
         let advised = whole(advice);
         if advised.is_none() {
-            self.halt(StopReason::AdviceInvalid, view.now);
+            // A stop that is there already keeps its name.
+            self.clear = 0;
+            if self.stop.is_none() {
+                self.halt(StopReason::AdviceInvalid, view.now);
+            }
         }
         // A pause between ticks gives no licence to leap.
         let elapsed = self

@@ -138,11 +138,11 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         admitted_motion_stays_safe_pioneer, admitted_motion_stays_safe_still,
         admitted_motion_stays_safe_2012, admitted_motion_stays_safe_2011, fits_by_clearance,
         fits_by_age, fits_by_way, braking_stays_safe_unknown, braking_stays_safe_still,
-        rest_is_always_safe, any_advice_is_limited, path_bends_no_tighter, what_moves_was_admitted,
+        rest_is_always_safe, any_advice_is_limited, what_moves_was_admitted,
         search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
         turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
         stop_set_is_monotone;
-    view: only_ranges_are_readings, echoes_are_held, still_is_earned, any_observation_is_judged;
+    view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_observation_is_judged;
 };
 
 /// Names of the harnesses in the source: functions below a `kani::proof`.
