@@ -62,18 +62,27 @@ pub fn placements<const N: usize>() -> [Placement; N] {
     })
 }
 
-/// The ring of [`placements`], and the configuration changed as little as it takes for the ring to
-/// be good with it: every configuration that goes with the ring stays as it is.
-///
-/// # Panics
-/// If a ring is refused for what no change mends.
+/// The ring of [`placements`], and the configuration it is good with. See [`fitted_to`].
 #[must_use]
 pub fn fitted<const N: usize>(config: &Config) -> (Config, Ring<N>) {
+    fitted_to(&placements(), config)
+}
+
+/// A ring, and the configuration changed as little as it takes for the ring to be good with it: every
+/// configuration that goes with the ring stays as it is.
+///
+/// # Panics
+/// If the ring is refused for what no change mends.
+#[must_use]
+pub fn fitted_to<const N: usize>(
+    placements: &[Placement; N],
+    config: &Config,
+) -> (Config, Ring<N>) {
     let mut p = *config.parameters();
     // Each turn mends what is named, or halves what asks for more than sonars see.
     for _ in 0..100 {
         let config = Config::new(p).expect("within every range");
-        match Ring::new(&placements(), &config) {
+        match Ring::new(placements, &config) {
             Ok(ring) => return (config, ring),
             Err(refused) if refused.field == "safe_distance" => {
                 if refused.min <= 10.0 {
