@@ -160,7 +160,7 @@ pub fn plan_covers_command() {
     let speed = any_in(1, limits.speed_max());
     match guard.plan(speed, 0, &Motion::REST) {
         Some(plan) => plan_covers(&limits, &plan, speed + limits.speed_gain()),
-        None => assert!(false, "there is a plan for every speed that may be told"),
+        None => unreachable!("there is a plan for every speed that may be told"),
     }
     kani::cover!(speed == 400, "full speed");
 }

@@ -881,7 +881,7 @@ fn blind_rings_are_refused() {
     assert_eq!(refused(&[ahead, at(0.0, f32::NAN, 0.0)]).field, "sonar y");
     assert_eq!(refused(&[ahead, at(0.0, 0.0, 10.0)]).field, "angle");
     // Cones of ±15° at 0° and 45°: 75° of the right side are unseen.
-    let gap = refused(&[ahead, at(0.1, 0.1, 0.785_398_2)]);
+    let gap = refused(&[ahead, at(0.1, 0.1, core::f32::consts::FRAC_PI_4)]);
     assert_eq!(gap.field, "gap between sonars ahead");
     assert!((gap.value.to_degrees() - 75.0).abs() < 0.1, "{gap}");
     assert_eq!(gap.max, config.blind_angle_max);

@@ -487,7 +487,7 @@ proptest! {
                 // A wall, and a robot that stands.
                 reading.measured = reading.measured.map(|_| 2_000);
                 reading.way = [0; 2];
-                reading.later = reading.later.min(100).max(1);
+                reading.later = reading.later.clamp(1, 100);
                 reading.age = 0;
             }
             let hazard = reading.arrive(&mut hearing, &mut now);

@@ -68,7 +68,7 @@ fn up(metres: f32) -> i32 {
 /// or beyond 10 m/s or 20 rad/s.
 fn in_whole_numbers(advice: Advice) -> Option<Twist> {
     let sensible = advice.speed.abs() <= 10.0 && advice.turn_rate.abs() <= 20.0;
-    sensible.then(|| Twist {
+    sensible.then_some(Twist {
         speed: (advice.speed * 1000.0) as i32,
         turn_rate: (advice.turn_rate * 1000.0) as i32,
     })
