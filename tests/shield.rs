@@ -212,7 +212,7 @@ proptest! {
         };
         for way in [0, 1] {
             // The greatest speed from which the robot rests within the way and the time.
-            let fastest = greatest(15, 24_000, |speed| {
+            let fastest = greatest(15, 30_000, |speed| {
                 limits.way_to_rest(speed) <= plan.way[way]
                     && (speed == 0 || limits.time_to_rest(speed) <= plan.time)
             });
@@ -971,6 +971,7 @@ proptest! {
         p.braking = 10.0;
         p.braking_share = 1.0;
         p.robot_radius = 0.05;
+        p.range_error = 0.0;
         p.safe_distance = p.sonar_range_max.min(10.0);
         p.blind_angle_max = allowed;
         let config = Config::new(p).expect("still in range");

@@ -828,6 +828,30 @@ proptest! {
         prop_assert!(believed <= from_hull + 0.01, "{believed} > {from_hull}");
     }
 
+    /// The closing cosines of a sonar: whatever is in its cone, from its face on, lies in no direction
+    /// from the robot's centre to which the robot closes more directly; and as seen from the face,
+    /// within those of the cone. To a thousandth, which they are rounded by.
+    //= shield.INV-9
+    #[test]
+    fn closing_covers_the_cone(
+        config in config(), at in placement(),
+        range in between(0.0, 20.0), off_axis in between(-1.0, 1.0),
+    ) {
+        let (sonar, point) = seen(&config, at, range, off_axis);
+        let closing = sonar.closing;
+        let away = point[0].hypot(point[1]);
+        prop_assume!(away > 1e-3);
+        let ahead = 1000.0 * point[0] / away;
+        prop_assert!(f64::from(closing.ahead) >= ahead - 0.1, "{closing:?} of {ahead}");
+        prop_assert!(f64::from(closing.back) >= -ahead - 0.1, "{closing:?} of {ahead}");
+        let direction = f64::from(at.heading) + f64::from(off_axis * config.sonar_half_angle);
+        let from_face = 1000.0 * direction.cos();
+        prop_assert!(f64::from(closing.face[0]) <= from_face + 0.1);
+        prop_assert!(f64::from(closing.face[1]) >= from_face - 0.1);
+        // Not by more than it takes: a sonar in the middle closes as its cone does.
+        prop_assert!(closing.ahead <= 1000 && closing.back <= 1000);
+    }
+
     /// Quantities exist only when they are in range, whatever the bits.
     #[test]
     fn quantities_are_valid(bits in any_f32()) {
