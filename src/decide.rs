@@ -608,11 +608,12 @@ pub struct SonarModel {
 }
 
 impl SonarModel {
-    /// p(z|obstacle), p(z|nothing) of a hearing.
+    /// p(z|obstacle), p(z|nothing) of a hearing, where an echo counts as coming from a place if it is
+    /// within `gate` metres of it.
     #[must_use]
-    pub fn likelihood(&self, hearing: Hearing) -> [f32; 2] {
-        // Of the false echoes as many come from the place as it takes up of the range.
-        let by_chance = self.false_echo * (2.0 * GATE / self.false_range).min(1.0);
+    pub fn likelihood(&self, hearing: Hearing, gate: f32) -> [f32; 2] {
+        // Of the false echoes as many come from the place as the gate takes up of the range.
+        let by_chance = self.false_echo * (2.0 * gate / self.false_range).clamp(0.01, 1.0);
         match hearing {
             Hearing::There => {
                 let heard = (1.0 - self.miss) * (1.0 - self.false_echo);
@@ -661,9 +662,11 @@ pub struct Parameters {
     pub sonar: SonarModel,
     /// The camera; shares of 0.001 to 0.999.
     pub camera: CameraModel,
-    /// Probability per sonar period that a thing comes to where there was none, 0.0001 to 0.5.
+    /// Probability that an echo from where nothing was expected is of a thing, 0.001 to 0.999.
+    pub newcomer: f32,
+    /// Probability per sonar period that a thing comes to a place where there was none, 0 to 0.5.
     pub appear: f32,
-    /// Probability per sonar period that a thing leaves, 0.0001 to 0.5.
+    /// Probability per sonar period that a thing leaves its place, 0 to 0.5.
     pub vanish: f32,
     /// Least probability of a state, ε, 0 to 0.1.
     pub floor: f32,
@@ -693,7 +696,8 @@ impl Parameters {
             detection: 0.93,
             false_alarm: 0.05,
         },
-        appear: 0.01,
+        newcomer: 0.1,
+        appear: 0.001,
         vanish: 0.02,
         floor: 1e-3,
         sonar_period: 100,
@@ -761,8 +765,9 @@ impl Settings {
         in_range("camera.detection", p.camera.detection, 1e-3, 0.999, "share")?;
         let false_alarm = p.camera.false_alarm;
         in_range("camera.false_alarm", false_alarm, 1e-3, 0.999, "share")?;
-        let appear = in_range("appear", p.appear, 1e-4, 0.5, "share")?;
-        let vanish = in_range("vanish", p.vanish, 1e-4, 0.5, "share")?;
+        let newcomer = in_range("newcomer", p.newcomer, 1e-3, 0.999, "share")?;
+        let appear = in_range("appear", p.appear, 0.0, 0.5, "share")?;
+        let vanish = in_range("vanish", p.vanish, 0.0, 0.5, "share")?;
         in_range("floor", p.floor, 0.0, 0.1, "share")?;
         in_range("sonar_period", p.sonar_period as f32, 10.0, 1e3, "ms")?;
         in_range("vision_period", p.vision_period as f32, 10.0, 5e3, "ms")?;
@@ -775,11 +780,7 @@ impl Settings {
         let even = Belief([ONE / 2; 2]);
         let transition = TransitionMatrix::new(&[[1.0 - vanish, vanish], [appear, 1.0 - appear]])
             .unwrap_or(TransitionMatrix { rows: [even; 2] });
-        let first = Belief::from_weights(&[
-            appear * (1.0 - p.sonar.miss),
-            (1.0 - appear) * p.sonar.false_echo,
-        ])
-        .unwrap_or(even);
+        let first = Belief::from_weights(&[newcomer, 1.0 - newcomer]).unwrap_or(even);
         Ok(Self {
             parameters,
             transition,
@@ -821,8 +822,12 @@ impl Settings {
 /// Places where something may be that are kept in mind at once.
 const PLACES: usize = 16;
 
-/// Echoes within this distance of a place, in metres, come from there: [`crate::track`] has the same.
+/// Echoes within this distance of a place, in metres, may come from there: [`crate::track`] has the
+/// same.
 const GATE: f32 = 0.4;
+
+/// Echoes of one thing scatter by no more than this, in metres, beyond what moved meanwhile.
+const SCATTER: f32 = 0.15;
 
 /// A place believed in less than this is forgotten.
 const FORGOTTEN: f32 = 0.02;
@@ -839,6 +844,60 @@ struct Place {
     /// In the odometry frame.
     position: Vector2<f32>,
     belief: Belief<2>,
+    /// When an echo came from there last.
+    heard: Instant,
+}
+
+impl Place {
+    /// An echo from the thing in this place differs from its distance by no more than this, m: by what
+    /// echoes scatter and by how far it may have moved.
+    fn gate(&self, now: Instant, config: &Config) -> f32 {
+        let age = now.since(self.heard).unwrap_or(0).min(1_000) as f32 / 1000.0;
+        (SCATTER + config.obstacle_speed_max * age).min(GATE)
+    }
+}
+
+/// A usable reading of a sonar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sound {
+    echo: bool,
+    /// Of the echo, or up to which there was none, m.
+    range: f32,
+}
+
+impl Sound {
+    /// None if the reading is not usable.
+    fn of(reading: SonarReading) -> Option<Self> {
+        let (echo, range) = match reading {
+            SonarReading::Echo(range) => (true, range.get()),
+            SonarReading::TooNear => (true, 0.0),
+            SonarReading::NoEcho(range) => (false, range.get()),
+            SonarReading::Stale | SonarReading::Invalid => return None,
+        };
+        Some(Self { echo, range })
+    }
+
+    /// What it says of a place.
+    fn of_place(
+        &self,
+        place: Vector2<f32>,
+        gate: f32,
+        sonar: &Sonar,
+        pose: &Pose,
+        config: &Config,
+    ) -> Hearing {
+        let offset = pose.to_robot(place) - sonar.position;
+        let distance = math::norm(offset);
+        let covered = offset.dot(&sonar.axis) >= distance * math::cos(config.sonar_half_angle);
+        let level = (self.range - distance).abs() <= gate;
+        let beside = math::norm(offset - sonar.axis * self.range) <= GATE;
+        match (self.echo && level, covered) {
+            (true, true) => Hearing::There,
+            (true, false) if beside => Hearing::Beside,
+            (false, true) if self.range > distance + gate => Hearing::Past,
+            _ => Hearing::Nothing,
+        }
+    }
 }
 
 /// What was decided in a tick, for people to see.
@@ -971,38 +1030,69 @@ impl<L, const N: usize> Decide<L, N> {
     fn update(&mut self, view: &View<N>, fresh: &[bool; N]) {
         let interest = self.config.safe_distance + GATE;
         for i in 0..N {
-            if !fresh[i] {
+            let Some(sound) = Sound::of(view.sonar[i]).filter(|_| fresh[i]) else {
                 continue;
-            }
-            let sonar = &self.ring.sonars()[i];
-            let (echo, range) = match view.sonar[i] {
-                SonarReading::Echo(range) => (true, range.get()),
-                SonarReading::TooNear => (true, 0.0),
-                SonarReading::NoEcho(range) => (false, range.get()),
-                SonarReading::Stale | SonarReading::Invalid => continue,
             };
-            let from = view.pose.to_world(sonar.position + sonar.axis * range);
-            let mut known = false;
-            for slot in &mut self.places {
+            let sonar = &self.ring.sonars()[i];
+            let from = view
+                .pose
+                .to_world(sonar.position + sonar.axis * sound.range);
+            // An echo is one thing's: that of the place it fits best.
+            let source = self.source(&sound, sonar, view);
+            for (k, slot) in self.places.iter_mut().enumerate() {
                 let Some(place) = slot else { continue };
-                let hearing = hear(place.position, sonar, &view.pose, echo, range, &self.config);
-                let likelihood = self.settings.parameters.sonar.likelihood(hearing);
+                let gate = place.gate(view.now, &self.config);
+                let mut hearing =
+                    sound.of_place(place.position, gate, sonar, &view.pose, &self.config);
+                if hearing == Hearing::There && source != Some(k) {
+                    hearing = Hearing::Nothing;
+                }
+                let likelihood = self.settings.parameters.sonar.likelihood(hearing, gate);
                 // Likelihoods are positive, and so is each belief, by its floor: there is a posterior.
                 if let Ok(belief) = place.belief.updated(&likelihood) {
                     place.belief = belief.floored(self.settings.parameters.floor);
                 }
-                known |= matches!(hearing, Hearing::There | Hearing::Beside);
                 if hearing == Hearing::There {
                     place.position = from;
+                    place.heard = view.now;
                 }
             }
-            if echo && !known && range <= interest {
-                self.add(Place {
-                    position: from,
-                    belief: self.settings.first,
-                });
+            if sound.echo && source.is_none() && sound.range <= interest {
+                self.add(
+                    Place {
+                        position: from,
+                        belief: self.settings.first,
+                        heard: view.now,
+                    },
+                    view.pose.position,
+                );
             }
         }
+    }
+
+    /// The place that an echo fits best, if it fits any: one that the sonar covers before one beside,
+    /// then the one at the most similar distance.
+    fn source(&self, sound: &Sound, sonar: &Sonar, view: &View<N>) -> Option<usize> {
+        let mut best: Option<(usize, bool, f32)> = None;
+        for (k, slot) in self.places.iter().enumerate() {
+            let Some(place) = slot else { continue };
+            let gate = place.gate(view.now, &self.config);
+            let hearing = sound.of_place(place.position, gate, sonar, &view.pose, &self.config);
+            let covered = match hearing {
+                Hearing::There => true,
+                Hearing::Beside => false,
+                Hearing::Past | Hearing::Nothing => continue,
+            };
+            let offset = view.pose.to_robot(place.position) - sonar.position;
+            let off = (math::norm(offset) - sound.range).abs();
+            let better = best.is_none_or(|(_, before, least)| {
+                (covered && !before) || (covered == before && off < least)
+            });
+            if better {
+                best = Some((k, covered, off));
+            }
+        }
+        best.map(|(k, ..)| k)
     }
 
     /// What a camera says of the places in its field of view.
@@ -1032,29 +1122,42 @@ impl<L, const N: usize> Decide<L, N> {
         }
     }
 
-    /// Keeps a place in mind, instead of the least probable if there are too many.
-    fn add(&mut self, place: Place) {
-        let mut least = 0;
+    /// Keeps a place in mind, instead of the farthest if there are too many.
+    fn add(&mut self, place: Place, robot: Vector2<f32>) {
+        let away = |place: &Place| math::norm(place.position - robot);
+        let (mut farthest, mut most) = (None, away(&place));
         for i in 0..PLACES {
             let Some(held) = &self.places[i] else {
                 self.places[i] = Some(place);
                 return;
             };
-            let lowest = self.places[least].map_or(0, |place| place.belief.0[0]);
-            if held.belief.0[0] < lowest {
-                least = i;
+            if away(held) > most {
+                (farthest, most) = (Some(i), away(held));
             }
         }
-        if self.places[least].is_some_and(|held| held.belief.0[0] < place.belief.0[0]) {
-            self.places[least] = Some(place);
+        if let Some(i) = farthest {
+            self.places[i] = Some(place);
         }
     }
 
-    /// Forgets places that are not believed in.
-    fn forget(&mut self) {
-        for slot in &mut self.places {
-            if slot.is_some_and(|place| place.belief.probability(0) < FORGOTTEN) {
-                *slot = None;
+    /// Forgets places that are not believed in, that are far away by now, or that have turned out to be
+    /// another's.
+    fn forget(&mut self, robot: Vector2<f32>) {
+        for i in 0..PLACES {
+            let Some(place) = self.places[i] else {
+                continue;
+            };
+            let twin = self.places.iter().enumerate().any(|(k, other)| {
+                other.is_some_and(|other| {
+                    let near = math::norm(other.position - place.position) <= SCATTER;
+                    let (one, two) = (place.belief.0[0], other.belief.0[0]);
+                    k != i && near && (two > one || (two == one && k < i))
+                })
+            });
+            let away = math::norm(place.position - robot);
+            let far = away > self.config.safe_distance + self.config.robot_radius + 2.0 * GATE;
+            if twin || far || place.belief.probability(0) < FORGOTTEN {
+                self.places[i] = None;
             }
         }
     }
@@ -1081,12 +1184,13 @@ impl<L, const N: usize> Decide<L, N> {
             let SonarReading::Echo(range) = view.sonar[i] else {
                 continue;
             };
-            let sonar = &self.ring.sonars()[i];
-            let from = view
-                .pose
-                .to_world(sonar.position + sonar.axis * range.get());
+            let sound = Sound {
+                echo: true,
+                range: range.get(),
+            };
             // What is not kept in mind, being far away or one too many, is taken as it is.
-            let Some(belief) = self.belief_at(from) else {
+            let source = self.source(&sound, &self.ring.sonars()[i], view);
+            let Some(Place { belief, .. }) = source.and_then(|k| self.places[k]) else {
                 continue;
             };
             if self.settings.respond(&belief, range) == Response::Continue {
@@ -1136,27 +1240,6 @@ impl<L, const N: usize> Decide<L, N> {
     }
 }
 
-/// What a reading of `sonar`, an echo at `range` or none up to it, says of a place.
-fn hear(
-    place: Vector2<f32>,
-    sonar: &Sonar,
-    pose: &Pose,
-    echo: bool,
-    range: f32,
-    config: &Config,
-) -> Hearing {
-    let offset = pose.to_robot(place) - sonar.position;
-    let distance = math::norm(offset);
-    let covered = offset.dot(&sonar.axis) >= distance * math::cos(config.sonar_half_angle);
-    let near = echo && math::norm(offset - sonar.axis * range) <= GATE;
-    match (near, covered) {
-        (true, true) => Hearing::There,
-        (true, false) => Hearing::Beside,
-        (false, true) if range > distance + GATE => Hearing::Past,
-        (false, _) => Hearing::Nothing,
-    }
-}
-
 impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
     fn advise(&mut self, view: &View<N>) -> Advice {
         let fresh = self.fresh(view);
@@ -1174,18 +1257,11 @@ impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
             &self.ring,
             &self.config,
         );
-        let followed = self
+        let obstacle = self
             .track
             .map(|track| track.obstacle(now, pose, view.speed, None, &self.ring, &self.config));
-        // Where the view follows the same thing it knows more of it, such as what a camera saw.
-        let same =
-            |seen: &Obstacle, ours: &Obstacle| math::norm(seen.position - ours.position) <= GATE;
-        let obstacle = match (view.obstacle, followed) {
-            (Some(seen), Some(ours)) if same(&seen, &ours) => Some(seen),
-            (_, followed) => followed,
-        };
         self.verdict = self.decide(view, obstacle.as_ref(), doubted);
-        self.forget();
+        self.forget(pose.position);
         let advice = self.law.advise(&View { obstacle, ..*view });
         // Advice that is no number is passed on: the shield has a name for it.
         self.verdict.overruled = self.verdict.response == Response::Stop && advice.speed > 0.0;
