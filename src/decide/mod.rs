@@ -16,13 +16,18 @@ use crate::math;
 use crate::observation::SonarReading;
 use crate::quantity::{Angle, Instant, Length, OutOfRange, Speed, in_range};
 use crate::ring::{Ring, Sonar};
-use crate::shield::{millimetres_down, millimetres_up};
 use crate::track::{self, Obstacle, Track};
-use crate::view::{Pose, View};
+use crate::view::{Class, Pose, View};
 use core::fmt;
 use nalgebra::Vector2;
 
-// ------------------------------------------------------------------ equations
+mod belief;
+mod loss;
+mod sensor;
+
+pub use belief::{Belief, NoBelief, NotStochastic, ONE, TransitionMatrix};
+pub use loss::{BadLoss, DistanceLoss, Dominated, LossTable, safest_of_the_least};
+pub use sensor::{CameraLook, CameraModel, Hearing, SonarModel};
 
 /// S2 E7 with E6: seconds until robot and obstacle are level along the axis of travel, for an
 /// obstacle that is seen at `bearing`, t = d·|sin(θ_R + β)|/(v_R|sin θ_R| + v_o|sin θ_o|). `None` if
@@ -44,517 +49,6 @@ pub fn time_to_level(
     let time = across / closing;
     (closing > 0.0 && time.is_finite()).then_some(time)
 }
-
-// --------------------------------------------------------------------- beliefs
-
-/// A probability of 1, in the parts in which a [`Belief`] is kept.
-pub const ONE: u32 = 1 << 24;
-
-/// Weights greater than this are no weights: their sum could not be computed.
-const WEIGHT_MAX: f32 = 1e30;
-
-/// Why there is no belief.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NoBelief {
-    /// A weight, probability or likelihood is not a number from 0 to 10³⁰.
-    NotAWeight {
-        /// Index of the state.
-        state: usize,
-        /// The value given.
-        value: f32,
-    },
-    /// The evidence is impossible in every state that is possible: nothing is left to believe.
-    NoEvidence,
-}
-
-impl fmt::Display for NoBelief {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotAWeight { state, value } => write!(
-                f,
-                "weight of state {state} is {value}, allowed is 0 to {WEIGHT_MAX:e}"
-            ),
-            Self::NoEvidence => write!(f, "the weights of all states are 0"),
-        }
-    }
-}
-
-impl core::error::Error for NoBelief {}
-
-/// A probability for each of `S` states (S2 E12): parts of [`ONE`] that add up to it exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Belief<const S: usize>([u32; S]);
-
-impl<const S: usize> Belief<S> {
-    /// The belief in proportion to some weights; each probability is within two parts of [`ONE`] of
-    /// the exact quotient, the greatest within 2·S.
-    ///
-    /// # Errors
-    /// [`NoBelief`] if a weight is not a number from 0 to 10³⁰, or all are 0.
-    pub fn from_weights(weights: &[f32; S]) -> Result<Self, NoBelief> {
-        let mut total = 0.0;
-        for (state, &value) in weights.iter().enumerate() {
-            // A comparison with NaN is false.
-            if !(0.0..=WEIGHT_MAX).contains(&value) {
-                return Err(NoBelief::NotAWeight { state, value });
-            }
-            total += value;
-        }
-        if total <= 0.0 {
-            return Err(NoBelief::NoEvidence);
-        }
-        let mut parts = [0; S];
-        for state in 0..S {
-            // No weight is greater than the total, however that was rounded.
-            parts[state] = (weights[state] / total * ONE as f32) as u32;
-        }
-        Ok(Self(completed(parts)))
-    }
-
-    /// The probability of a state, in [0, 1]; 0 for one that there is not.
-    #[must_use]
-    pub fn probability(&self, state: usize) -> f32 {
-        // Exact: an f32 holds every whole number up to ONE.
-        self.0
-            .get(state)
-            .map_or(0.0, |&part| part as f32 / ONE as f32)
-    }
-
-    /// The parts of [`ONE`], state by state.
-    #[must_use]
-    pub const fn parts(&self) -> &[u32; S] {
-        &self.0
-    }
-
-    /// S2 E16: the belief one step later, b̄_j = Σ_i b_i·P_ij.
-    #[must_use]
-    pub fn predicted(&self, transition: &TransitionMatrix<S>) -> Self {
-        let mut parts = [0; S];
-        for (to, part) in parts.iter_mut().enumerate() {
-            let mut sum = 0;
-            for from in 0..S {
-                sum += u64::from(self.0[from]) * u64::from(transition.rows[from].0[to]);
-            }
-            *part = (sum / u64::from(ONE)).min(u64::from(ONE)) as u32;
-        }
-        Self(completed(parts))
-    }
-
-    /// S2 E13 and E21: the belief after an observation with these likelihoods, b_j = η·ℓ_j·b̄_j. The
-    /// odds of two states are multiplied by the ratio of their likelihoods.
-    ///
-    /// # Errors
-    /// [`NoBelief`] if a likelihood is not a number from 0 to 10³⁰, or no state that is possible
-    /// allows the observation.
-    pub fn updated(&self, likelihood: &[f32; S]) -> Result<Self, NoBelief> {
-        let mut weights = [0.0; S];
-        for state in 0..S {
-            let value = likelihood[state];
-            if !(0.0..=WEIGHT_MAX).contains(&value) {
-                return Err(NoBelief::NotAWeight { state, value });
-            }
-            weights[state] = value * self.probability(state);
-        }
-        Self::from_weights(&weights)
-    }
-
-    /// The belief with no state less probable than `floor` (0 to 1/S): (1 − S·ε)·b + ε. Without it a
-    /// belief that has come to 1 could never be changed by any evidence. A floor that is out of range
-    /// counts as the nearest that is not.
-    #[must_use]
-    pub fn floored(&self, floor: f32) -> Self {
-        let least = ((floor * ONE as f32) as u32).min(ONE / (S as u32).max(1));
-        let kept = u64::from(ONE - least * S as u32);
-        let mut parts = [0; S];
-        for state in 0..S {
-            let part = u64::from(self.0[state]) * kept / u64::from(ONE);
-            parts[state] = part as u32 + least;
-        }
-        Self(completed(parts))
-    }
-}
-
-/// Parts that add up to [`ONE`]: what rounding lost goes to the greatest, what it gained is taken from
-/// it.
-fn completed<const S: usize>(mut parts: [u32; S]) -> [u32; S] {
-    const { assert!(S > 0, "a belief needs a state") };
-    let (mut greatest, mut sum) = (0, 0);
-    for state in 0..S {
-        sum += u64::from(parts[state]);
-        if parts[state] > parts[greatest] {
-            greatest = state;
-        }
-    }
-    let one = u64::from(ONE);
-    if sum <= one {
-        parts[greatest] += (one - sum) as u32;
-        return parts;
-    }
-    let mut excess = sum - one;
-    let mut take = |part: &mut u32| {
-        let taken = excess.min(u64::from(*part));
-        *part -= taken as u32;
-        excess -= taken;
-    };
-    take(&mut parts[greatest]);
-    // Never needed for sums that are off by rounding alone.
-    for part in &mut parts {
-        take(part);
-    }
-    parts
-}
-
-/// Why a matrix is no transition matrix.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NotStochastic {
-    /// An entry is no probability.
-    Entry {
-        /// Row: the state before.
-        from: usize,
-        /// Column: the state after.
-        to: usize,
-        /// The value given.
-        value: f32,
-    },
-    /// A row does not add up to 1.
-    Row {
-        /// Row: the state before.
-        from: usize,
-        /// What it adds up to.
-        sum: f32,
-    },
-}
-
-impl fmt::Display for NotStochastic {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Entry { from, to, value } => write!(
-                f,
-                "transition from state {from} to {to} is {value}, allowed is 0 to 1"
-            ),
-            Self::Row { from, sum } => write!(
-                f,
-                "transitions from state {from} add up to {sum}, allowed is 1 to within {ROW_ERROR:e}"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for NotStochastic {}
-
-/// A row of a transition matrix adds up to 1 to within this.
-const ROW_ERROR: f32 = 1e-5;
-
-/// P_ij = p(x_t = j | x_t−1 = i) of S2 E16. Each row is a [`Belief`], so it adds up to 1 exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TransitionMatrix<const S: usize> {
-    rows: [Belief<S>; S],
-}
-
-impl<const S: usize> TransitionMatrix<S> {
-    /// A matrix by its rows: `rows[from][to]`.
-    ///
-    /// # Errors
-    /// [`NotStochastic`], with the row, if an entry is not in [0, 1] or a row does not add up to 1.
-    pub fn new(rows: &[[f32; S]; S]) -> Result<Self, NotStochastic> {
-        let mut checked = [Belief([0; S]); S];
-        for from in 0..S {
-            let mut sum = 0.0;
-            for to in 0..S {
-                let value = rows[from][to];
-                if !(0.0..=1.0).contains(&value) {
-                    return Err(NotStochastic::Entry { from, to, value });
-                }
-                sum += value;
-            }
-            if (sum - 1.0).abs() > ROW_ERROR {
-                return Err(NotStochastic::Row { from, sum });
-            }
-            checked[from] =
-                Belief::from_weights(&rows[from]).map_err(|_| NotStochastic::Row { from, sum })?;
-        }
-        Ok(Self { rows: checked })
-    }
-
-    /// The row of a state, as a belief.
-    #[must_use]
-    pub fn row(&self, from: usize) -> Option<&Belief<S>> {
-        self.rows.get(from)
-    }
-}
-
-// ---------------------------------------------------------------------- losses
-
-/// The greatest loss, in seconds.
-const LOSS_MAX: f32 = 1e5;
-
-/// Parts of [`ONE`] by which rounding may move a probability in a decision.
-const ROUNDING: i64 = 4;
-
-/// Why a table of losses is refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum BadLoss {
-    /// A loss is not a number of seconds from 0 to 10⁵.
-    NotALoss {
-        /// Index of the action.
-        action: usize,
-        /// Index of the state.
-        state: usize,
-        /// The value given.
-        value: f32,
-    },
-    /// An action can never be chosen.
-    Dominated(Dominated),
-    /// The distance at which the near table holds is not below that of the far one.
-    Distance(OutOfRange),
-}
-
-/// An action that another one makes pointless: in no state is the other one worse.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dominated {
-    /// Index of the action that is never worth choosing.
-    pub action: usize,
-    /// Index of the action that is at least as good in every state.
-    pub by: usize,
-}
-
-impl fmt::Display for BadLoss {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotALoss {
-                action,
-                state,
-                value,
-            } => write!(
-                f,
-                "loss of action {action} in state {state} is {value} s, allowed is 0 s to {LOSS_MAX} s"
-            ),
-            Self::Dominated(Dominated { action, by }) => write!(
-                f,
-                "action {action} is dominated: action {by} is no worse in any state, so action \
-                 {action} would not be chosen"
-            ),
-            Self::Distance(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for BadLoss {}
-
-/// L(θ, a): the loss of each of `A` actions in each of `S` states (S2 Table 2), in milliseconds.
-///
-/// Actions are ordered from the boldest to the safest: a tie goes to the last of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LossTable<const A: usize, const S: usize>([[i32; S]; A]);
-
-impl LossTable<2, 2> {
-    /// S2 Table 2 as printed: maneuver, then stop; obstacle, then none. Stopping is dominated: with
-    /// this table the robot never stops (decide.INV-9).
-    pub const TABLE_2: Self = Self([[0, 5_000], [5_000, 10_000]]);
-
-    /// S2's text has no loss for stopping before an obstacle. Stopping is still dominated, and chosen
-    /// only where an obstacle is certain.
-    pub const TEXT: Self = Self([[0, 5_000], [0, 10_000]]);
-}
-
-impl<const A: usize, const S: usize> LossTable<A, S> {
-    /// A table of losses in seconds, `loss[action][state]`, in which every action has its use.
-    ///
-    /// # Errors
-    /// [`BadLoss`] if a loss is not a number from 0 to 10⁵ s, or naming an action that another one
-    /// dominates, and the other one.
-    pub fn new(loss: &[[f32; S]; A]) -> Result<Self, BadLoss> {
-        let table = Self::with_dominated(loss)?;
-        match table.dominated() {
-            Some(dominated) => Err(BadLoss::Dominated(dominated)),
-            None => Ok(table),
-        }
-    }
-
-    /// The same for somebody who wants a table with actions that are never chosen, such as S2's.
-    ///
-    /// # Errors
-    /// [`BadLoss`] if a loss is not a number from 0 to 10⁵ s.
-    pub fn with_dominated(loss: &[[f32; S]; A]) -> Result<Self, BadLoss> {
-        const { assert!(A > 0, "a decision needs an action") };
-        let mut table = [[0; S]; A];
-        for action in 0..A {
-            for state in 0..S {
-                let value = loss[action][state];
-                if !(0.0..=LOSS_MAX).contains(&value) {
-                    return Err(BadLoss::NotALoss {
-                        action,
-                        state,
-                        value,
-                    });
-                }
-                table[action][state] = (value * 1000.0 + 0.5) as i32;
-            }
-        }
-        Ok(Self(table))
-    }
-
-    /// Losses in milliseconds, `[action][state]`.
-    #[must_use]
-    pub const fn milliseconds(&self) -> &[[i32; S]; A] {
-        &self.0
-    }
-
-    /// The first action that another one dominates, if any does.
-    #[must_use]
-    pub fn dominated(&self) -> Option<Dominated> {
-        for action in 0..A {
-            for by in 0..A {
-                if self.dominates(by, action) {
-                    return Some(Dominated { action, by });
-                }
-            }
-        }
-        None
-    }
-
-    /// Action `by` is never worse than `action`, and better somewhere, or as good and safer.
-    fn dominates(&self, by: usize, action: usize) -> bool {
-        let mut better = by > action;
-        for state in 0..S {
-            let (one, other) = (self.0[by][state], self.0[action][state]);
-            if one > other {
-                return false;
-            }
-            better |= one < other;
-        }
-        by != action && better
-    }
-
-    /// S2 E22: the posterior expected loss of each action, B(p, a) = Σ_θ L(θ, a)·p(θ|z), exactly, in
-    /// milliseconds times [`ONE`].
-    #[must_use]
-    pub fn expected(&self, belief: &Belief<S>) -> [i64; A] {
-        let mut expected = [0; A];
-        for action in 0..A {
-            for state in 0..S {
-                expected[action] += i64::from(self.0[action][state]) * i64::from(belief.0[state]);
-            }
-        }
-        expected
-    }
-
-    /// The same in seconds.
-    #[must_use]
-    pub fn expected_seconds(&self, belief: &Belief<S>) -> [f32; A] {
-        self.expected(belief)
-            .map(|loss| loss as f32 / (ONE as f32 * 1000.0))
-    }
-
-    /// The action with the least expected loss, by index. Of several, and of those that the rounding
-    /// of the belief cannot tell from it, the last: the safest.
-    #[must_use]
-    pub fn choose(&self, belief: &Belief<S>) -> usize {
-        let expected = self.expected(belief);
-        let mut least = expected[0];
-        for loss in expected {
-            least = least.min(loss);
-        }
-        let tie = least + ROUNDING * self.spread();
-        let mut chosen = 0;
-        for action in 0..A {
-            if expected[action] <= tie {
-                chosen = action;
-            }
-        }
-        chosen
-    }
-
-    /// By how much actions can differ: the sum over states of greatest less least loss.
-    fn spread(&self) -> i64 {
-        let mut sum = 0;
-        for state in 0..S {
-            let (mut least, mut greatest) = (self.0[0][state], self.0[0][state]);
-            for action in 0..A {
-                least = least.min(self.0[action][state]);
-                greatest = greatest.max(self.0[action][state]);
-            }
-            sum += i64::from(greatest) - i64::from(least);
-        }
-        sum
-    }
-}
-
-/// Losses that depend on the distance of the obstacle: one table from a distance on, another one up to
-/// a smaller distance, and between them in proportion.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DistanceLoss<const A: usize, const S: usize> {
-    far: LossTable<A, S>,
-    near: LossTable<A, S>,
-    /// mm.
-    far_distance: i32,
-    /// mm.
-    near_distance: i32,
-}
-
-impl<const A: usize, const S: usize> DistanceLoss<A, S> {
-    /// `far` holds from `far_distance` on, `near` up to `near_distance`.
-    ///
-    /// # Errors
-    /// [`BadLoss`] if the distances are not at least 1 cm apart, or naming an action that the same
-    /// other one dominates in both tables, and hence at every distance.
-    pub fn new(
-        far: LossTable<A, S>,
-        far_distance: Length,
-        near: LossTable<A, S>,
-        near_distance: Length,
-    ) -> Result<Self, BadLoss> {
-        let loss = Self::with_dominated(far, far_distance, near, near_distance)?;
-        for action in 0..A {
-            for by in 0..A {
-                if far.dominates(by, action) && near.dominates(by, action) {
-                    return Err(BadLoss::Dominated(Dominated { action, by }));
-                }
-            }
-        }
-        Ok(loss)
-    }
-
-    /// The same for somebody who wants actions that are never chosen.
-    ///
-    /// # Errors
-    /// [`BadLoss`] if the distances are not at least 1 cm apart.
-    pub fn with_dominated(
-        far: LossTable<A, S>,
-        far_distance: Length,
-        near: LossTable<A, S>,
-        near_distance: Length,
-    ) -> Result<Self, BadLoss> {
-        let (most, least) = (far_distance.get(), near_distance.get());
-        in_range("near_distance", least, 0.0, most - 0.01, "m").map_err(BadLoss::Distance)?;
-        Ok(Self {
-            far,
-            near,
-            far_distance: millimetres_up(most),
-            near_distance: millimetres_down(least),
-        })
-    }
-
-    /// The table at a distance.
-    #[must_use]
-    pub fn at(&self, distance: Length) -> LossTable<A, S> {
-        let span = i64::from(self.far_distance) - i64::from(self.near_distance);
-        // Rounded down: no obstacle counts as farther than it is.
-        let beyond = i64::from(millimetres_down(distance.get())) - i64::from(self.near_distance);
-        let beyond = beyond.clamp(0, span);
-        let mut table = self.near;
-        for action in 0..A {
-            for state in 0..S {
-                let near = i64::from(self.near.0[action][state]);
-                let far = i64::from(self.far.0[action][state]);
-                table.0[action][state] = (near + (far - near) * beyond / span.max(1)) as i32;
-            }
-        }
-        table
-    }
-}
-
-// --------------------------------------------------------------- sensor models
 
 /// The states of S2 E18, as indices of beliefs, likelihoods and losses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -582,79 +76,6 @@ impl Response {
     const ALL: [Self; 3] = [Self::Continue, Self::Maneuver, Self::Stop];
 }
 
-/// What a sonar's reading says of a place in its cone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hearing {
-    /// An echo from there.
-    There,
-    /// An echo from nearby, of a sonar whose cone does not cover the place: of the same thing, perhaps,
-    /// but this sonar would not have heard past it either.
-    Beside,
-    /// An echo from behind it, or none: the sonar heard past it.
-    Past,
-    /// An echo from before it, a thing that hides it or crosstalk; or no usable reading.
-    Nothing,
-}
-
-/// How often a sonar is wrong.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SonarModel {
-    /// Share of looks at a thing in which its echo is lost.
-    pub miss: f32,
-    /// Share of looks in which an echo comes out of nowhere, from crosstalk or noise.
-    pub false_echo: f32,
-    /// False echoes come from anywhere up to this range, metres: that of the walls.
-    pub false_range: f32,
-}
-
-impl SonarModel {
-    /// p(z|obstacle), p(z|nothing) of a hearing, where an echo counts as coming from a place if it is
-    /// within `gate` metres of it.
-    #[must_use]
-    pub fn likelihood(&self, hearing: Hearing, gate: f32) -> [f32; 2] {
-        // Of the false echoes as many come from the place as the gate takes up of the range.
-        let by_chance = self.false_echo * (2.0 * gate / self.false_range).clamp(0.01, 1.0);
-        match hearing {
-            Hearing::There => {
-                let heard = (1.0 - self.miss) * (1.0 - self.false_echo);
-                [heard + by_chance, by_chance]
-            }
-            Hearing::Past => [self.miss, 1.0 - self.false_echo],
-            Hearing::Beside | Hearing::Nothing => [1.0, 1.0],
-        }
-    }
-}
-
-/// How often a camera's detector of people is wrong, per image.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraModel {
-    /// Share of people in the picture that are detected.
-    pub detection: f32,
-    /// Share of pictures of nobody in which somebody is detected.
-    pub false_alarm: f32,
-}
-
-impl CameraModel {
-    /// p(z|obstacle), p(z|nothing) of a detection, or of none.
-    #[must_use]
-    pub fn likelihood(&self, detected: bool) -> [f32; 2] {
-        if detected {
-            [self.detection, self.false_alarm]
-        } else {
-            [1.0 - self.detection, 1.0 - self.false_alarm]
-        }
-    }
-}
-
-/// A look through a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CameraLook {
-    /// Bearing of somebody, positive to the left; none if nobody was detected.
-    pub detected: Option<Angle>,
-    /// When the picture was taken.
-    pub taken_at: Instant,
-}
-
 /// What the decision rests on; plain numbers that [`Settings::new`] checks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
@@ -668,7 +89,7 @@ pub struct Parameters {
     pub appear: f32,
     /// Probability per sonar period that a thing leaves its place, 0 to 0.5.
     pub vanish: f32,
-    /// Least probability of a state, ε, 0 to 0.1.
+    /// Least probability of a state, ε, 10⁻⁶ to 0.1.
     pub floor: f32,
     /// Time between two looks of a sonar, 10 to 1000 ms: 100 ms in S2. A reading that stands counts
     /// again after it, not before.
@@ -716,6 +137,8 @@ pub struct Settings {
     loss: DistanceLoss<3, 2>,
     /// What is believed of an echo from where nothing was expected.
     first: Belief<2>,
+    /// The floor ε in parts of [`ONE`].
+    least: u32,
 }
 
 /// Why settings are refused.
@@ -768,7 +191,7 @@ impl Settings {
         let newcomer = in_range("newcomer", p.newcomer, 1e-3, 0.999, "share")?;
         let appear = in_range("appear", p.appear, 0.0, 0.5, "share")?;
         let vanish = in_range("vanish", p.vanish, 0.0, 0.5, "share")?;
-        in_range("floor", p.floor, 0.0, 0.1, "share")?;
+        let floor = in_range("floor", p.floor, 1e-6, 0.1, "share")?;
         in_range("sonar_period", p.sonar_period as f32, 10.0, 1e3, "ms")?;
         in_range("vision_period", p.vision_period as f32, 10.0, 5e3, "ms")?;
         in_range("control_period", p.control_period as f32, 10.0, 1e3, "ms")?;
@@ -776,16 +199,17 @@ impl Settings {
         let near = LossTable::with_dominated(&p.near_loss)?;
         let at = |metres| Length::metres(metres).unwrap_or(Length::ZERO);
         let loss = DistanceLoss::new(far, at(config.safe_distance), near, at(config.min_distance))?;
-        // None of these is refused, with the probabilities above.
-        let even = Belief([ONE / 2; 2]);
+        // Neither of these is refused, with the probabilities above.
+        let even = Belief::even();
         let transition = TransitionMatrix::new(&[[1.0 - vanish, vanish], [appear, 1.0 - appear]])
-            .unwrap_or(TransitionMatrix { rows: [even; 2] });
+            .unwrap_or(TransitionMatrix::even());
         let first = Belief::from_weights(&[newcomer, 1.0 - newcomer]).unwrap_or(even);
         Ok(Self {
             parameters,
             transition,
             loss,
             first,
+            least: (floor * ONE as f32) as u32,
         })
     }
 
@@ -809,6 +233,19 @@ impl Settings {
         &self.loss
     }
 
+    /// S2 E13 with the floor: the belief after an observation, unless that is impossible.
+    ///
+    /// # Errors
+    /// [`NoBelief`] if a likelihood is no weight, or none is above 0.
+    pub fn observe(
+        &self,
+        belief: &Belief<2>,
+        likelihood: &[f32; 2],
+    ) -> Result<Belief<2>, NoBelief> {
+        let belief = belief.updated(likelihood)?;
+        Ok(belief.raised(self.least))
+    }
+
     /// What is best done about a thing at a distance that is there with this probability.
     #[must_use]
     pub fn respond(&self, belief: &Belief<2>, distance: Length) -> Response {
@@ -816,8 +253,6 @@ impl Settings {
         Response::ALL.get(chosen).copied().unwrap_or(Response::Stop)
     }
 }
-
-// -------------------------------------------------------------------- the law
 
 /// Places where something may be that are kept in mind at once.
 const PLACES: usize = 16;
@@ -1049,8 +484,8 @@ impl<L, const N: usize> Decide<L, N> {
                 }
                 let likelihood = self.settings.parameters.sonar.likelihood(hearing, gate);
                 // Likelihoods are positive, and so is each belief, by its floor: there is a posterior.
-                if let Ok(belief) = place.belief.updated(&likelihood) {
-                    place.belief = belief.floored(self.settings.parameters.floor);
+                if let Ok(belief) = self.settings.observe(&place.belief, &likelihood) {
+                    place.belief = belief;
                 }
                 if hearing == Hearing::There {
                     place.position = from;
@@ -1116,8 +551,8 @@ impl<L, const N: usize> Decide<L, N> {
                 // Somebody else was detected: nothing is said of this one.
                 _ => continue,
             };
-            if let Ok(belief) = place.belief.updated(&likelihood) {
-                place.belief = belief.floored(self.settings.parameters.floor);
+            if let Ok(belief) = self.settings.observe(&place.belief, &likelihood) {
+                place.belief = belief;
             }
         }
     }
@@ -1150,7 +585,7 @@ impl<L, const N: usize> Decide<L, N> {
             let twin = self.places.iter().enumerate().any(|(k, other)| {
                 other.is_some_and(|other| {
                     let near = math::norm(other.position - place.position) <= SCATTER;
-                    let (one, two) = (place.belief.0[0], other.belief.0[0]);
+                    let (one, two) = (place.belief.parts()[0], other.belief.parts()[0]);
                     k != i && near && (two > one || (two == one && k < i))
                 })
             });
@@ -1240,6 +675,21 @@ impl<L, const N: usize> Decide<L, N> {
     }
 }
 
+/// What becomes of a law's advice, and whether it was overruled: a stop makes motion ahead into none,
+/// and leaves turning and backing off as they are; anything else leaves the advice as it is. Advice
+/// that is no number is passed on: the shield has a name for it.
+#[must_use]
+pub fn overruled(advice: Advice, response: Response) -> (Advice, bool) {
+    if response == Response::Stop && advice.speed > 0.0 {
+        let stands = Advice {
+            speed: 0.0,
+            ..advice
+        };
+        return (stands, true);
+    }
+    (advice, false)
+}
+
 impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
     fn advise(&mut self, view: &View<N>) -> Advice {
         let fresh = self.fresh(view);
@@ -1257,20 +707,21 @@ impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
             &self.ring,
             &self.config,
         );
-        let obstacle = self
-            .track
-            .map(|track| track.obstacle(now, pose, view.speed, None, &self.ring, &self.config));
+        let obstacle = self.track.map(|track| {
+            let look = track::Look {
+                now,
+                pose,
+                speed: view.speed,
+                sighting: None,
+                still: view.hazard[track.sonar()].class == Class::Still,
+            };
+            track.obstacle(&look, &self.ring, &self.config)
+        });
         self.verdict = self.decide(view, obstacle.as_ref(), doubted);
         self.forget(pose.position);
         let advice = self.law.advise(&View { obstacle, ..*view });
-        // Advice that is no number is passed on: the shield has a name for it.
-        self.verdict.overruled = self.verdict.response == Response::Stop && advice.speed > 0.0;
-        if self.verdict.overruled {
-            return Advice {
-                speed: 0.0,
-                ..advice
-            };
-        }
+        let (advice, overruled) = overruled(advice, self.verdict.response);
+        self.verdict.overruled = overruled;
         advice
     }
 
