@@ -47,6 +47,7 @@ impl<const S: usize> Belief<S> {
     ///
     /// # Errors
     /// [`NoBelief`] if a weight is not a number from 0 to 10³⁰, or all are 0.
+    //= decide.INV-2
     pub fn from_weights(weights: &[f32; S]) -> Result<Self, NoBelief> {
         let mut total = 0.0;
         for (state, &value) in weights.iter().enumerate() {
@@ -108,6 +109,8 @@ impl<const S: usize> Belief<S> {
     /// # Errors
     /// [`NoBelief`] if a likelihood is not a number from 0 to 10³⁰, or no state that is possible
     /// allows the observation.
+    //= decide.INV-4
+    //= decide.INV-5
     pub fn updated(&self, likelihood: &[f32; S]) -> Result<Self, NoBelief> {
         let mut weights = [0.0; S];
         for state in 0..S {
@@ -145,6 +148,7 @@ impl<const S: usize> Belief<S> {
 
 /// Parts that add up to [`ONE`]: what rounding lost goes to the greatest, what it gained is taken from
 /// it.
+//= decide.INV-1
 fn completed<const S: usize>(mut parts: [u32; S]) -> [u32; S] {
     const { assert!(S > 0, "a belief needs a state") };
     let (mut greatest, mut sum) = (0, 0);
@@ -225,6 +229,7 @@ impl<const S: usize> TransitionMatrix<S> {
     ///
     /// # Errors
     /// [`NotStochastic`], with the row, if an entry is not in [0, 1] or a row does not add up to 1.
+    //= decide.INV-6
     pub fn new(rows: &[[f32; S]; S]) -> Result<Self, NotStochastic> {
         let mut checked = [Belief([0; S]); S];
         for from in 0..S {

@@ -70,7 +70,8 @@ pub struct LossTable<const A: usize, const S: usize>([[i32; S]; A]);
 
 impl LossTable<2, 2> {
     /// S2 Table 2 as printed: maneuver, then stop; obstacle, then none. Stopping is dominated: with
-    /// this table the robot never stops (decide.INV-9).
+    /// this table the robot never stops.
+    //= decide.INV-9
     pub const TABLE_2: Self = Self([[0, 5_000], [5_000, 10_000]]);
 
     /// S2's text has no loss for stopping before an obstacle. Stopping is still dominated, and chosen
@@ -84,6 +85,7 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
     /// # Errors
     /// [`BadLoss`] if a loss is not a number from 0 to 10⁵ s, or naming an action that another one
     /// dominates, and the other one.
+    //= decide.INV-11
     pub fn new(loss: &[[f32; S]; A]) -> Result<Self, BadLoss> {
         let table = Self::with_dominated(loss)?;
         match table.dominated() {
@@ -149,6 +151,7 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
 
     /// S2 E22: the posterior expected loss of each action, B(p, a) = Σ_θ L(θ, a)·p(θ|z), exactly, in
     /// milliseconds times [`ONE`].
+    //= decide.INV-7
     #[must_use]
     pub fn expected(&self, belief: &Belief<S>) -> [i64; A] {
         let mut expected = [0; A];
@@ -170,12 +173,14 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
 
     /// The action with the least expected loss, by index. Of several, and of those that the rounding
     /// of the belief cannot tell from it, the last: the safest.
+    //= decide.INV-10
     #[must_use]
     pub fn choose(&self, belief: &Belief<S>) -> usize {
         safest_of_the_least(&self.expected(belief), ROUNDING * self.spread())
     }
 
     /// The same for a belief that there may not be: without one, the safest action.
+    //= decide.INV-3
     #[must_use]
     pub fn respond(&self, belief: &Result<Belief<S>, NoBelief>) -> usize {
         match belief {
@@ -200,6 +205,7 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
 }
 
 /// The last of the losses that exceed the least by no more than `tie` (0 at least), by index.
+//= decide.INV-8
 #[must_use]
 pub fn safest_of_the_least<const A: usize>(losses: &[i64; A], tie: i64) -> usize {
     let mut least = i64::MAX;

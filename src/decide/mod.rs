@@ -247,6 +247,7 @@ impl Settings {
     }
 
     /// What is best done about a thing at a distance that is there with this probability.
+    //= decide.INV-12
     #[must_use]
     pub fn respond(&self, belief: &Belief<2>, distance: Length) -> Response {
         let chosen = self.loss.at(distance).choose(belief);
@@ -644,6 +645,7 @@ impl<L, const N: usize> Decide<L, N> {
     }
 
     /// S2 E22 and A1: what to do about the obstacle that is believed in.
+    //= decide.INV-15
     fn decide(&self, view: &View<N>, obstacle: Option<&Obstacle>, doubted: Option<f32>) -> Verdict {
         let late = |evidence| {
             let period = self.settings.parameters.control_period;
@@ -654,18 +656,20 @@ impl<L, const N: usize> Decide<L, N> {
             ..Verdict::IDLE
         };
         if let Some(obstacle) = obstacle {
-            let belief = self.belief_at(obstacle.position);
-            let belief = belief.unwrap_or(self.settings.first);
-            let collides = self.collides(obstacle, &view.pose);
-            verdict.response = match self.settings.respond(&belief, obstacle.distance) {
-                Response::Stop if collides => Response::Stop,
-                // What is followed was believed in: losing sight of it is no reason to go on.
-                _ => Response::Maneuver,
-            };
-            verdict.probability = Some(belief.probability(0));
             verdict.distance = Some(obstacle.distance);
-            let table = self.settings.loss.at(obstacle.distance);
-            verdict.expected = Some(table.expected_seconds(&belief));
+            // What is far away is not judged, and concerns nobody yet.
+            if let Some(belief) = self.belief_at(obstacle.position) {
+                let table = self.settings.loss.at(obstacle.distance);
+                verdict.probability = Some(belief.probability(0));
+                verdict.expected = Some(table.expected_seconds(&belief));
+                let inside = obstacle.distance.get() < self.config.safe_distance;
+                verdict.response = match self.settings.respond(&belief, obstacle.distance) {
+                    Response::Stop if self.collides(obstacle, &view.pose) => Response::Stop,
+                    // What is followed was believed in: losing sight of it is no reason to go on.
+                    _ if inside => Response::Maneuver,
+                    _ => Response::Continue,
+                };
+            }
         }
         if self.evidence.is_none_or(late) {
             verdict.response = Response::Stop;
@@ -678,6 +682,7 @@ impl<L, const N: usize> Decide<L, N> {
 /// What becomes of a law's advice, and whether it was overruled: a stop makes motion ahead into none,
 /// and leaves turning and backing off as they are; anything else leaves the advice as it is. Advice
 /// that is no number is passed on: the shield has a name for it.
+//= decide.INV-13
 #[must_use]
 pub fn overruled(advice: Advice, response: Response) -> (Advice, bool) {
     if response == Response::Stop && advice.speed > 0.0 {
@@ -691,6 +696,7 @@ pub fn overruled(advice: Advice, response: Response) -> (Advice, bool) {
 }
 
 impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
+    //= decide.INV-14
     fn advise(&mut self, view: &View<N>) -> Advice {
         let fresh = self.fresh(view);
         self.predict(view.now);
