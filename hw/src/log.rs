@@ -111,14 +111,14 @@ fn usual_law() -> String {
 }
 
 impl Header {
-    /// The header of a run.
+    /// The header of a run with the usual law.
     #[must_use]
-    pub fn new(config: &RobotConfig, law: &str, subclass: &str, goal: [f32; 2]) -> Self {
+    pub fn new(config: &RobotConfig, subclass: &str, goal: [f32; 2]) -> Self {
         let values = config.core.values();
         Self {
             log: 1,
             program: env!("CARGO_PKG_VERSION").to_owned(),
-            law: law.to_owned(),
+            law: usual_law(),
             subclass: subclass.to_owned(),
             goal: goal.map(f64::from),
             sonars: config.sonars,

@@ -392,12 +392,10 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
     fn begin_log(&mut self, subclass: &str) {
         if !self.header_written {
             self.header_written = true;
-            let header = Header::new(
-                &self.config,
-                self.law_name,
-                subclass,
-                [self.goal.x, self.goal.y],
-            );
+            let header = Header {
+                law: self.law_name.to_owned(),
+                ..Header::new(&self.config, subclass, [self.goal.x, self.goal.y])
+            };
             self.write(&header);
             // What happened before the robot said who it is.
             for (t, text) in std::mem::take(&mut self.before) {
