@@ -125,6 +125,7 @@ pub struct Odometer {
 
 impl Odometer {
     /// Adds the way from one pose to the next.
+    //= view.INV-5
     #[must_use]
     pub fn advanced(self, from: &Pose, to: &Pose) -> Self {
         let offset = to.position - from.position;
@@ -241,6 +242,7 @@ impl<const N: usize> Memory<N> {
     /// # Errors
     /// The reason to stop if there is no usable odometry: without a pose there is no view. What
     /// the sonars saw is remembered all the same.
+    //= view.INV-4
     pub fn update(
         &mut self,
         observation: &Observation<N>,
@@ -385,6 +387,8 @@ impl EchoMemory {
 
     /// Takes in a look and holds on to what was heard until its place is seen to be free or the
     /// hold time is over (view.INV-2, view.INV-3).
+    //= view.INV-2
+    //= view.INV-3
     pub fn update(&mut self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         if let Some(range) = look.measured {
             self.compare(range, look, sonar, config);
@@ -395,6 +399,7 @@ impl EchoMemory {
 
     /// Compares a new echo with those before it: does the thing stand still, is it too fast, does
     /// the sonar hear at all?
+    //= view.INV-6
     fn compare(&mut self, range: i32, look: &Look, sonar: &Sonar, config: &Config) {
         let echo = Echo {
             range,
@@ -522,6 +527,8 @@ impl EchoMemory {
     }
 
     /// What follows for the shield.
+    //= view.INV-5
+    //= view.INV-7
     fn hazard(&self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         let loss = sonar.contact_range + millimetres_up(config.range_error);
         let Some(held) = self.held else {
