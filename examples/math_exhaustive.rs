@@ -35,6 +35,7 @@ struct Function {
 }
 
 const FUNCTIONS: [Function; 3] = [
+    //= math.INV-1 (every input)
     Function {
         name: "sin",
         invariant: "math.INV-1",
@@ -43,6 +44,7 @@ const FUNCTIONS: [Function; 3] = [
         nearness: |_, result| Some(f64::from(result).abs()),
         nearness_is: "greatest |result| (at most 1)",
     },
+    //= math.INV-2 (every input)
     Function {
         name: "cos",
         invariant: "math.INV-2",
@@ -55,6 +57,7 @@ const FUNCTIONS: [Function; 3] = [
         },
         nearness_is: "greatest ½ − result within 60° (at most 1e-6)",
     },
+    //= math.INV-3 (every input)
     Function {
         name: "sqrt",
         invariant: "math.INV-3",
