@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::Sighting;
-use crate::quantity::{Angle, Length, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Length, OutOfRange, Speed, in_range, within};
 use crate::track::Obstacle;
 use crate::view::View;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -563,7 +563,7 @@ impl<const N: usize> Law<N> for Avoid {
         Advice {
             // First turn, then go.
             speed: speed * (1.0 - error.abs() / FRAC_PI_2).max(0.0),
-            turn_rate: (self.config.heading_gain * error).clamp(-turn_rate_max, turn_rate_max),
+            turn_rate: within(self.config.heading_gain * error, turn_rate_max),
         }
     }
 

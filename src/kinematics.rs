@@ -1,7 +1,7 @@
 //! Differential-drive kinematics, S2 E1 to E5, with the yaw relation the paper leaves out.
 
 use crate::math;
-use crate::quantity::{Angle, OutOfRange, in_range};
+use crate::quantity::{Angle, OutOfRange, in_range, within};
 use nalgebra::Vector2;
 
 /// Forward speed and turn rate of the robot.
@@ -100,7 +100,7 @@ impl WheelRates {
         }
         let factor = limit / fastest;
         // The product can round above the limit.
-        let scale = |rate: f32| (rate * factor).clamp(-limit, limit);
+        let scale = |rate: f32| within(rate * factor, limit);
         Ok(Self {
             right: scale(right),
             left: scale(left),

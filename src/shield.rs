@@ -399,11 +399,10 @@ impl Guard {
         let step = limits.turn_acceleration * elapsed / 1000;
         let wish = advised
             .turn_rate
-            .clamp(
-                last.turn_rate.min(0).saturating_sub(step),
-                last.turn_rate.max(0).saturating_add(step),
-            )
-            .clamp(-limits.turn_rate_max, limits.turn_rate_max);
+            .max(last.turn_rate.min(0).saturating_sub(step))
+            .min(last.turn_rate.max(0).saturating_add(step))
+            .max(-limits.turn_rate_max)
+            .min(limits.turn_rate_max);
         let turn_rate = greatest(12, wish.abs(), |rate| no_tighter(speed, rate, advised));
 
         // That, and smaller ones by 64ths: speeds rounded up, turn rates down.

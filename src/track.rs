@@ -49,7 +49,9 @@ const GATE: f32 = 0.4;
 pub(crate) struct Track {
     position: Vector2<f32>,
     distance: Length,
-    sonar: usize,
+    /// Of the sonar that saw it last, as in [`Echo`].
+    contact_range: i32,
+    inset: f32,
     seen: Instant,
     /// Ticks in which a sonar saw past its place since it was seen there.
     absent: u32,
@@ -60,7 +62,10 @@ pub(crate) struct Track {
 /// One echo, placed.
 #[derive(Clone, Copy)]
 struct Echo {
-    sonar: usize,
+    /// Of the sonar that heard it, mm.
+    contact_range: i32,
+    /// How far that sonar is from the robot's centre, m.
+    inset: f32,
     distance: Length,
     position: Vector2<f32>,
 }
@@ -72,7 +77,8 @@ impl Track {
         Self {
             position: echo.position,
             distance: echo.distance,
-            sonar: echo.sonar,
+            contact_range: echo.contact_range,
+            inset: echo.inset,
             seen: now,
             absent: 0,
             history,
@@ -97,12 +103,11 @@ impl Track {
     }
 
     /// The same obstacle, not seen this time: its distance follows from where it was.
-    fn unseen<const N: usize>(&self, seen_past: bool, pose: &Pose, ring: &Ring<N>) -> Self {
+    fn unseen(&self, seen_past: bool, pose: &Pose) -> Self {
         let offset = math::norm(self.position - pose.position);
-        let inset = math::norm(ring.sonars()[self.sonar].position);
         Self {
             absent: self.absent.saturating_add(u32::from(seen_past)),
-            distance: Length::metres((offset - inset).max(0.0)).unwrap_or(self.distance),
+            distance: Length::metres((offset - self.inset).max(0.0)).unwrap_or(self.distance),
             ..*self
         }
     }
@@ -121,13 +126,12 @@ impl Track {
     }
 
     /// What the law is told of the obstacle.
-    pub(crate) fn obstacle<const N: usize>(
+    pub(crate) fn obstacle(
         &self,
         now: Instant,
         pose: &Pose,
         speed: f32,
         sighting: Option<&Sighting>,
-        ring: &Ring<N>,
         config: &Config,
     ) -> Obstacle {
         let offset = self.position - pose.position;
@@ -149,7 +153,7 @@ impl Track {
             .unwrap_or_else(|| closing_speed(rate, speed * math::cos(bearing.get()), speed_max));
         Obstacle {
             distance: self.distance,
-            contact_range: ring.sonars()[self.sonar].contact_range,
+            contact_range: self.contact_range,
             direction,
             position: self.position,
             trend,
@@ -214,16 +218,17 @@ pub(crate) fn follow<const N: usize>(
     let mut nearest: Option<Echo> = None;
     let mut matched: Option<(Echo, f32)> = None;
     let mut seen_past = false;
-    for (i, (reading, at)) in sonar.iter().zip(ring.sonars()).enumerate() {
+    for ((reading, at), fresh) in sonar.iter().zip(ring.sonars()).zip(fresh) {
         let SonarReading::Echo(distance) = *reading else {
             continue;
         };
-        if !fresh[i] {
+        if !fresh {
             continue;
         }
         let point = at.position + at.axis * distance.get();
         let echo = Echo {
-            sonar: i,
+            contact_range: at.contact_range,
+            inset: math::norm(at.position),
             distance,
             position: pose.to_world(point),
         };
@@ -248,7 +253,7 @@ pub(crate) fn follow<const N: usize>(
             _ => Some(old.seen_at(echo, now)),
         },
         (Some(old), None) => {
-            let old = old.unseen(seen_past, pose, ring);
+            let old = old.unseen(seen_past, pose);
             let gone = old.absent >= config.confirm_samples as u32;
             let expired = now
                 .since(old.seen)

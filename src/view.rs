@@ -303,16 +303,9 @@ impl<const N: usize> Memory<N> {
             distance: math::norm(to_goal),
         };
         track::follow(&mut self.track, &sonar, &fresh, &pose, now, ring, config);
-        let obstacle = self.track.map(|track| {
-            track.obstacle(
-                now,
-                &pose,
-                speed,
-                observation.sighting.as_ref(),
-                ring,
-                config,
-            )
-        });
+        let obstacle = self
+            .track
+            .map(|track| track.obstacle(now, &pose, speed, observation.sighting.as_ref(), config));
         Ok(View {
             now,
             pose,
