@@ -20,6 +20,8 @@ pub struct Harness {
     pub assumes: Vec<String>,
     /// Cover properties in its text or in its helpers'.
     pub covers: usize,
+    /// The modules of `src/` that it leads to.
+    pub modules: BTreeSet<String>,
     /// Of everything that Kani is given: the harness, its helpers, and the modules they lead to.
     pub digest: String,
 }
@@ -193,8 +195,9 @@ pub fn harnesses() -> BTreeMap<String, Harness> {
             .collect();
         parts[1..].sort();
         parts.iter().for_each(|part| digest.add(part));
-        for module in closure(named(&texts, &["crate::", "sidestep::"], &code), &code) {
-            digest.add(&code[module]);
+        let reached_modules = closure(named(&texts, &["crate::", "sidestep::"], &code), &code);
+        for module in &reached_modules {
+            digest.add(&code[*module]);
         }
         for module in named(&texts, &["sidestep_spec::"], &book) {
             digest.add(&book[module]);
@@ -235,6 +238,7 @@ pub fn harnesses() -> BTreeMap<String, Harness> {
                     .iter()
                     .map(|item| item.body.matches("kani::cover!").count())
                     .sum(),
+                modules: reached_modules.into_iter().map(str::to_owned).collect(),
                 digest: format!("{:08x}", (digest.0 >> 32) ^ (digest.0 & 0xffff_ffff)),
             },
         );
