@@ -394,9 +394,9 @@ const SCATTER: i32 = 100;
 /// Turning by no more than this between two readings, mrad, a sonar looks in the same direction.
 const SAME_DIRECTION: i32 = 30;
 
-/// A still surface that is heard at 75° to its normal comes nearer by four times the way that the
+/// A still surface that is heard at 60° to its normal comes nearer by twice the way that the
 /// robot's motion takes the cone along it.
-const GRAZING: i32 = 4;
+const GRAZING: i32 = 2;
 
 /// What is nearer by more than this explains, m/s, is another thing: nobody runs that fast indoors.
 const FASTEST: f32 = 4.0;
