@@ -498,6 +498,7 @@ impl EchoMemory {
         if u64::from(gap.unsigned_abs()) > milliseconds(config.sonar_age_max) {
             self.agreed = 0;
             self.anchor = None;
+            self.unchanged_since = look.odometer.way[0];
         }
         let tolerance = millimetres_up(config.still_tolerance);
         let anchor = self.anchor.unwrap_or(latest);
