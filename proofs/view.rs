@@ -299,7 +299,11 @@ pub fn nothing_is_forgotten() {
     let turned = super::shield::any_in(0, 1_000);
     let range = super::shield::any_in(0, 10_000);
     let start = Odometer::default();
-    let before = memory.update(&look(Some(range), 1000, start, any_witness()), sonar, &config);
+    let before = memory.update(
+        &look(Some(range), 1000, start, any_witness()),
+        sonar,
+        &config,
+    );
     let odometer = Odometer {
         way: [ahead, back].map(i64::from),
         turned: i64::from(turned),
