@@ -141,6 +141,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 )]),
             }
         }
+        //= avoid.INV-2
         ("S1.E2", "lit") => Computed {
             reference: vec![(
                 "v_o_cos_theta_o_cm_s",
@@ -154,6 +155,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
             )],
             core: None,
         },
+        //= avoid.INV-1
+        //= avoid.INV-3
         ("S1.E3", variant) => {
             let terms = [
                 "dp_px",
@@ -203,6 +206,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-4
         ("S1.E4", "rec") => {
             let (t, stop) = spec::avoid::e4_bound(
                 i.number("d_o_cm"),
@@ -241,6 +245,9 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-6
+        //= avoid.INV-7
+        //= avoid.INV-8
         ("S1.E5", "rec") => {
             let bearing = i.number("obstacle_bearing_deg");
             let reference_heading = i.number("theta_ref_rad");
@@ -286,6 +293,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("theta_m_rad", radians(core.get()))]),
             }
         }
+        //= avoid.INV-9
         ("S1.E7", variant) => {
             let (turn, speed_max) = (i.number("dtheta_rad"), i.number("v_max_cm_s"));
             let reference = if variant == "lit" {
@@ -326,6 +334,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 }),
             }
         }
+        //= avoid.INV-12
         ("S1.A1", "rec") => {
             let (goal, customer) = (i.truth("goal_pose_reached"), i.truth("customer_confirmed"));
             let core = avoid::arrival(
@@ -345,6 +354,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("result", Value::from(format!("{core:?}")))]),
             }
         }
+        //= avoid.INV-14
         ("S1.A3", "rec") => {
             let orientation = i.number("global_orientation_deg");
             let (image, folded, approaching) = spec::avoid::a3(orientation);
@@ -365,6 +375,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= avoid.INV-10
+        //= avoid.INV-11
         ("S1.A4", "rec") => {
             let (distance, time) = (i.number("d_o_cm"), i.number("ttc_s"));
             let fresh = i.truth("sensors_fresh");
@@ -422,6 +434,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= kinematics.INV-1
         ("S2.E5", variant) => {
             let (radius, right, left) = (i.number("R_m"), i.number("omega_r"), i.number("omega_l"));
             let base = if variant == "rec" {
