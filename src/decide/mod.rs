@@ -721,7 +721,7 @@ impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
                 sighting: None,
                 still: view.hazard[track.sonar()].class == Class::Still,
             };
-            track.obstacle(&look, &self.ring, &self.config)
+            track.obstacle(&look, &self.config)
         });
         self.verdict = self.decide(view, obstacle.as_ref(), doubted);
         self.forget(pose.position);
