@@ -42,8 +42,8 @@ impl core::error::Error for NoBelief {}
 pub struct Belief<const S: usize>([u32; S]);
 
 impl<const S: usize> Belief<S> {
-    /// The belief in proportion to some weights. Each probability is within S parts of [`ONE`] of the
-    /// exact quotient, the greatest within S².
+    /// The belief in proportion to some weights. Each probability is within S + 1 parts of [`ONE`] of
+    /// the exact quotient, the greatest within S·(S + 1): S roundings in f32 and a cut.
     ///
     /// # Errors
     /// [`NoBelief`] if a weight is not a number from 0 to 10³⁰, or all are 0.
@@ -104,7 +104,8 @@ impl<const S: usize> Belief<S> {
     }
 
     /// S2 E13 and E21: the belief after an observation with these likelihoods, b_j = η·ℓ_j·b̄_j. The
-    /// odds of two states are multiplied by the ratio of their likelihoods.
+    /// odds of two states are multiplied by the ratio of their likelihoods. Rounded like
+    /// [`from_weights`](Self::from_weights), twice more.
     ///
     /// # Errors
     /// [`NoBelief`] if a likelihood is not a number from 0 to 10³⁰, or no state that is possible

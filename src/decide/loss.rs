@@ -10,7 +10,7 @@ use core::fmt;
 const LOSS_MAX: f32 = 1e5;
 
 /// Parts of [`ONE`] by which rounding may move a probability in a decision.
-const ROUNDING: i64 = 4;
+const ROUNDING: i64 = 8;
 
 /// Why a table of losses is refused.
 #[derive(Clone, Copy, Debug, PartialEq)]

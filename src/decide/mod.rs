@@ -417,6 +417,11 @@ impl<L, const N: usize> Decide<L, N> {
         &self.law
     }
 
+    /// The law, to tell it what no view holds.
+    pub const fn law_mut(&mut self) -> &mut L {
+        &mut self.law
+    }
+
     /// What was decided last.
     #[must_use]
     pub const fn verdict(&self) -> &Verdict {
@@ -453,7 +458,7 @@ impl<L, const N: usize> Decide<L, N> {
         let elapsed = self.last.and_then(|last| now.since(last)).unwrap_or(0);
         // Half a period or more is one: ticks and looks need not keep step.
         let period = self.settings.parameters.sonar_period.max(1);
-        let steps = ((elapsed + period / 2) / period).min(STEPS_MAX);
+        let steps = (elapsed.min(STEPS_MAX * period) + period / 2) / period;
         for place in self.places.iter_mut().flatten() {
             for _ in 0..steps {
                 place.belief = place.belief.predicted(&self.settings.transition);
