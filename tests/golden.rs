@@ -583,6 +583,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
         //= decide.INV-7
         //= decide.INV-8
         //= decide.INV-9
+        //= decide.INV-11
         ("S2.E22", "rec") => {
             let posterior = i.numbers("posterior");
             let rows = i.rows("loss");
