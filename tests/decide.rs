@@ -91,8 +91,8 @@ proptest! {
         prop_assert_eq!(belief.is_ok(), weights.iter().any(|weight| *weight > 0.0));
         if let Ok(belief) = belief {
             let total: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
-            for state in 0..3 {
-                let exact = f64::from(weights[state]) / total;
+            for (state, weight) in weights.iter().enumerate() {
+                let exact = f64::from(*weight) / total;
                 let found = f64::from(belief.probability(state));
                 prop_assert!((found - exact).abs() <= 12.0 / f64::from(ONE));
             }

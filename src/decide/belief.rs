@@ -139,9 +139,8 @@ impl<const S: usize> Belief<S> {
     pub(super) fn raised(&self, least: u32) -> Self {
         let kept = u64::from(ONE - least * S as u32);
         let mut parts = [0; S];
-        for state in 0..S {
-            let part = u64::from(self.0[state]) * kept / u64::from(ONE);
-            parts[state] = part as u32 + least;
+        for (part, held) in parts.iter_mut().zip(self.0) {
+            *part = (u64::from(held) * kept / u64::from(ONE)) as u32 + least;
         }
         Self(completed(parts))
     }
@@ -235,8 +234,7 @@ impl<const S: usize> TransitionMatrix<S> {
         let mut checked = [Belief([0; S]); S];
         for from in 0..S {
             let mut sum = 0.0;
-            for to in 0..S {
-                let value = rows[from][to];
+            for (to, &value) in rows[from].iter().enumerate() {
                 if !(0.0..=1.0).contains(&value) {
                     return Err(NotStochastic::Entry { from, to, value });
                 }

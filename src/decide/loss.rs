@@ -155,10 +155,9 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
     #[must_use]
     pub fn expected(&self, belief: &Belief<S>) -> [i64; A] {
         let mut expected = [0; A];
-        for action in 0..A {
-            for state in 0..S {
-                expected[action] +=
-                    i64::from(self.0[action][state]) * i64::from(belief.parts()[state]);
+        for (sum, losses) in expected.iter_mut().zip(&self.0) {
+            for (&loss, &part) in losses.iter().zip(belief.parts()) {
+                *sum += i64::from(loss) * i64::from(part);
             }
         }
         expected

@@ -436,7 +436,7 @@ impl<L, const N: usize> Decide<L, N> {
     /// Which readings are new: those that changed, and those that have stood for a sonar period.
     fn fresh(&mut self, view: &View<N>) -> [bool; N] {
         let mut fresh = [false; N];
-        for i in 0..N {
+        for (i, fresh) in fresh.iter_mut().enumerate() {
             let reading = view.sonar[i];
             let usable = !matches!(reading, SonarReading::Stale | SonarReading::Invalid);
             let stood = |since: Instant| {
@@ -445,7 +445,7 @@ impl<L, const N: usize> Decide<L, N> {
             };
             let new = self.heard[i].is_none_or(|(before, at)| before != reading || stood(at));
             if usable && new {
-                fresh[i] = true;
+                *fresh = true;
                 self.heard[i] = Some((reading, view.now));
                 self.evidence = Some(view.now);
             }
@@ -470,8 +470,8 @@ impl<L, const N: usize> Decide<L, N> {
     /// S2 E13: what the sonars say of the places, and places for echoes from where none was expected.
     fn update(&mut self, view: &View<N>, fresh: &[bool; N]) {
         let interest = self.config.safe_distance + GATE;
-        for i in 0..N {
-            let Some(sound) = Sound::of(view.sonar[i]).filter(|_| fresh[i]) else {
+        for (i, &fresh) in fresh.iter().enumerate() {
+            let Some(sound) = Sound::of(view.sonar[i]).filter(|_| fresh) else {
                 continue;
             };
             let sonar = &self.ring.sonars()[i];
@@ -621,8 +621,8 @@ impl<L, const N: usize> Decide<L, N> {
         let silence = Length::metres(self.config.sonar_range_max).unwrap_or(Length::MAX);
         let mut readings = view.sonar;
         let mut doubted: Option<f32> = None;
-        for i in 0..N {
-            let SonarReading::Echo(range) = view.sonar[i] else {
+        for (i, reading) in readings.iter_mut().enumerate() {
+            let SonarReading::Echo(range) = *reading else {
                 continue;
             };
             let sound = Sound {
@@ -635,7 +635,7 @@ impl<L, const N: usize> Decide<L, N> {
                 continue;
             };
             if self.settings.respond(&belief, range) == Response::Continue {
-                readings[i] = SonarReading::NoEcho(silence);
+                *reading = SonarReading::NoEcho(silence);
                 let probability = belief.probability(0);
                 doubted = Some(doubted.map_or(probability, |most| most.max(probability)));
             }
