@@ -259,27 +259,32 @@ const COLUMNS: [&str; 9] = [
     "stands in, assumed",
 ];
 
-/// The ledger as it stands: the line that says by what, and the verdicts by harness.
-pub fn read_ledger() -> (String, BTreeMap<String, Verdict>) {
+/// The ledger as it stands: the line that says by what, and the verdicts by harness. Where a merge
+/// has left two of a harness, the one on its present code counts.
+pub fn read_ledger(harnesses: &BTreeMap<String, Harness>) -> (String, BTreeMap<String, Verdict>) {
     let text = std::fs::read_to_string(root().join(PATH)).unwrap_or_default();
-    let mut found = BTreeMap::new();
+    let mut found: BTreeMap<String, Verdict> = BTreeMap::new();
     let mut by = String::new();
     for line in text.lines() {
         if let Some(rest) = line.strip_prefix("Last run: ") {
             by = rest.to_owned();
         }
         let cells: Vec<&str> = line.trim_matches('|').split(" | ").map(str::trim).collect();
-        if cells.len() > COLUMNS.len() && cells[0].contains("::") && cells[2] != "NOT RUN" {
-            found.insert(
-                cells[0].to_owned(),
-                Verdict {
-                    result: cells[2].to_owned(),
-                    seconds: cells[3].to_owned(),
-                    checks: cells[4].to_owned(),
-                    covers: cells[5].to_owned(),
-                    digest: cells[6].to_owned(),
-                },
-            );
+        if cells.len() <= COLUMNS.len() || !cells[0].contains("::") || cells[2] == "NOT RUN" {
+            continue;
+        }
+        let verdict = Verdict {
+            result: cells[2].to_owned(),
+            seconds: cells[3].to_owned(),
+            checks: cells[4].to_owned(),
+            covers: cells[5].to_owned(),
+            digest: cells[6].to_owned(),
+        };
+        let present = harnesses
+            .get(cells[0])
+            .is_some_and(|harness| harness.digest == verdict.digest);
+        if present || !found.contains_key(cells[0]) {
+            found.insert(cells[0].to_owned(), verdict);
         }
     }
     (by, found)
