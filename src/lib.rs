@@ -39,3 +39,8 @@ pub mod wall;
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]
 mod proofs;
+
+/// The program text of the guides compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/your-own-law.md")]
+struct YourOwnLaw;
