@@ -43,7 +43,7 @@ const PERSON: &str = "#2b8a3e";
 const STOP: &str = "#d6336c";
 const WALL: &str = "#495057";
 
-fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
+pub(crate) fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
     Text::new(content)
         .set("x", round(x))
         .set("y", round(y))
@@ -51,7 +51,7 @@ fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
         .set("font-family", "sans-serif")
 }
 
-fn round(x: f64) -> f64 {
+pub(crate) fn round(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
 }
 

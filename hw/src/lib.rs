@@ -7,6 +7,7 @@
 
 pub mod base;
 pub mod config;
+pub mod decide;
 pub mod demo;
 pub mod draw;
 pub mod drive;

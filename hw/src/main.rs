@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
+use sidestep_hw::decide;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::emulate::{Line, Link, serve};
@@ -40,7 +41,8 @@ enum Command {
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
-    /// people; needs --data).
+    /// people; needs --data), decide (S2's experiment with its decision and a noisy sonar; leaves
+    /// timeline.svg too: belief, decision and distance over time).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -57,6 +59,9 @@ enum Command {
         /// Share of echoes that get lost, 0 to 1.
         #[arg(long, default_value_t = 0.02)]
         dropout: f64,
+        /// Share of readings that are false echoes, 0 to 1: none, but 0.01 for decide.
+        #[arg(long)]
+        false_echo: Option<f64>,
         /// People walk on even into a robot that stands still.
         #[arg(long)]
         inconsiderate: bool,
@@ -191,6 +196,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             start_time,
             seed,
             dropout,
+            false_echo,
             inconsiderate,
             speed,
             out,
@@ -199,11 +205,13 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             if !(0.1..=20.0).contains(&speed) {
                 return Err(format!("--speed is {speed}, allowed is 0.1 to 20").into());
             }
+            let decides = scenario == decide::NAME;
             let knobs = Knobs {
                 seed,
                 courteous: !inconsiderate,
                 sonar_faults: Faults {
                     dropout,
+                    false_echo: false_echo.unwrap_or(if decides { 0.01 } else { 0.0 }),
                     ..Faults::default()
                 },
                 ..Knobs::default()
@@ -215,7 +223,10 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 knobs,
                 speed,
                 out,
-                config: read_config(config.as_deref())?,
+                config: match config {
+                    None if decides => decide::table_1()?,
+                    config => read_config(config.as_deref())?,
+                },
             })
         }
         Command::Run {
@@ -261,6 +272,17 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
     let mut contacts = 0;
+    if options.scenario == decide::NAME {
+        let (folder, touched) = decide::demonstrate(options, &SIGNALS, &mut status)?;
+        status.keep(&format!(
+            "picture: {}\n",
+            folder.join("picture.svg").display()
+        ));
+        return match touched {
+            0 => Ok(ExitCode::SUCCESS),
+            _ => Err(format!("the robot touched something {touched} times while it moved").into()),
+        };
+    }
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();
