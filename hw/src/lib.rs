@@ -10,6 +10,7 @@ pub mod config;
 pub mod demo;
 pub mod draw;
 pub mod drive;
+pub mod edge;
 pub mod emulate;
 pub mod episodes;
 pub mod faults;
