@@ -423,8 +423,8 @@ pub struct Gap {
     pub left: f32,
 }
 
-/// What floats round at the lengths of a corridor, m.
-const ROUNDING: f32 = 1e-6;
+/// What floats round over a scan: the angles of its beams add up to some 10⁻⁶ rad, m.
+const ROUNDING: f32 = 1e-4;
 
 impl Gap {
     /// How wide it is, m.
@@ -615,7 +615,8 @@ impl<'a> Sight<'a> {
                 } else {
                     self.crossed(i, place, from, to)
                 };
-                // Where a surface ends, it may go on up to the beam that passes it.
+                // Where a surface ends, it may go on up to the beam that passes it: round the scanner,
+                // or square across the way.
                 for j in [i.wrapping_sub(1), i + 1] {
                     if j >= self.beams() {
                         continue;
@@ -624,10 +625,22 @@ impl<'a> Sight<'a> {
                         Beam::Hit(_, other) => other > range + JOIN,
                         Beam::Nothing | Beam::Unusable => true,
                     };
-                    let end = self.origin + self.direction(j) * range;
-                    if passes && (inside(end) || inside(place)) {
-                        let [low, high] = blocked.unwrap_or([end.y; 2]);
-                        blocked = Some([low.min(end.y), high.max(end.y)]);
+                    if !passes {
+                        continue;
+                    }
+                    let direction = self.direction(j);
+                    let depth = place.x - self.origin.x;
+                    let square = if direction.x > 0.1 && depth > 0.0 {
+                        depth / direction.x
+                    } else {
+                        range
+                    };
+                    for range in [range, square.min(range + JOIN)] {
+                        let end = self.origin + direction * range;
+                        if inside(end) || inside(place) {
+                            let [low, high] = blocked.unwrap_or([end.y; 2]);
+                            blocked = Some([low.min(end.y), high.max(end.y)]);
+                        }
                     }
                 }
                 blocked
