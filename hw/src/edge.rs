@@ -11,9 +11,9 @@ use sidestep::preset;
 use sidestep::quantity::Instant;
 use sidestep::ring::{Placement, Ring};
 use sidestep::view::View;
+use sidestep_sim::corridor::{self, Corridor};
 use sidestep_sim::geometry::{Point, Pose};
 use sidestep_sim::laser::{self, Laser};
-use sidestep_sim::scenario::Scenario;
 use sidestep_sim::simulation::Simulation;
 use sidestep_sim::world::{Body, Cone, World};
 use std::error::Error;
@@ -100,10 +100,8 @@ pub struct ClassicalStop {
 
 /// What is to be driven.
 pub struct Course {
-    /// World, start and robot. Its goal is not looked at.
-    pub scenario: Scenario,
-    /// The corners of the way, m.
-    pub corners: Vec<Point>,
+    /// Where, and which way.
+    pub corridor: Corridor,
     /// The scanner; none if the robot has none, and then it waits for ever where it would look.
     pub laser: Option<laser::Parameters>,
     /// The robot's configuration.
@@ -130,19 +128,25 @@ pub struct Run {
 }
 
 impl Course {
+    /// A body is one of the walls.
+    #[must_use]
+    pub fn is_wall(&self, body: Body) -> bool {
+        matches!(body, Body::Obstacle(i) if i < self.corridor.walls)
+    }
+
     /// Drives it, in virtual time.
     ///
     /// # Errors
     /// If something in it is out of range.
     pub fn run(&self) -> Result<Run, Box<dyn Error>> {
-        let scenario = &self.scenario;
+        let scenario = &self.corridor.scenario;
         let start = scenario.start;
         let ring: Ring<8> = crate::base::ring(&self.config)?;
         let law: Driver = Edge::new(
             self.config.core,
             EdgeConfig::new(self.edge)?,
             ring,
-            route(&start, &self.corners)?,
+            route(&start, &self.corridor.way)?,
         )?;
         let mut scanner = match self.laser {
             Some(parameters) => Some(Laser::new(parameters, scenario.seed)?),
@@ -292,4 +296,103 @@ fn decisive(
     };
     let sonar = (0..8).min_by(|a, b| miss(a).total_cmp(&miss(b)))?;
     truth(sonar, ring, pose, world, config)
+}
+
+// --------------------------------------------------------------------------- corridors by number
+
+/// A corridor made up from a seed, until something is detected, or holds the robot up.
+///
+/// # Errors
+/// If the simulation refuses something.
+pub fn random(seed: u64, with_box: bool, classical: f64) -> Result<Course, Box<dyn Error>> {
+    let config = corridor_base()?;
+    let mut corridor = corridor::random(seed, with_box, &robot_for(&config))?;
+    corridor.scenario.time_limit_ms = 60_000;
+    Ok(Course {
+        corridor,
+        laser: None,
+        config,
+        edge: edge::PAPER,
+        classical,
+        until: |event| matches!(event, Event::Detected(..) | Event::HeldUp(..)),
+    })
+}
+
+/// What came of corridors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Corridors {
+    /// Corridors driven.
+    pub runs: u64,
+    /// Runs to the end of the edge.
+    pub covered: u64,
+    /// A wall was taken for an obstacle.
+    pub walls_detected: u64,
+    /// The box was detected, with 300 mm or more before the sonar's face.
+    pub boxes_before_300: u64,
+    /// It was detected nearer than that.
+    pub boxes_nearer: u64,
+    /// The shield had stopped the robot before the box was detected.
+    pub boxes_by_shield: u64,
+    /// The shield held the robot up for a wall.
+    pub held_by_wall: u64,
+    /// Runs that were over before anything happened.
+    pub out_of_time: u64,
+    /// Runs to the end of the edge although a box was on it.
+    pub boxes_missed: u64,
+    /// Contacts while the robot moved.
+    pub contacts: u64,
+    /// Runs in which the classical detector would have stopped for a wall.
+    pub classical_false: u64,
+}
+
+impl Corridors {
+    /// Adds a run of a course.
+    pub fn add(&mut self, course: &Course, run: &Run, with_box: bool) {
+        self.runs += 1;
+        self.contacts += u64::from(run.summary.contacts_while_moving());
+        let is_wall = |body| course.is_wall(body);
+        self.classical_false += u64::from(run.classical.iter().any(|stop| is_wall(stop.body)));
+        let decisive = run
+            .happenings
+            .iter()
+            .find(|happening| !matches!(happening.event, Event::Covered(_)));
+        match decisive.map(|happening| (happening.event, happening.heard)) {
+            Some((Event::Detected(..), Some((body, distance)))) => {
+                if is_wall(body) {
+                    self.walls_detected += 1;
+                } else if distance >= 0.3 {
+                    self.boxes_before_300 += 1;
+                } else {
+                    self.boxes_nearer += 1;
+                }
+            }
+            // Something was detected where nothing is: as bad as a wall.
+            Some((Event::Detected(..), None)) => self.walls_detected += 1,
+            Some((_, Some((body, _)))) if !is_wall(body) => self.boxes_by_shield += 1,
+            Some(_) => self.held_by_wall += 1,
+            None if run.summary.tally.arrived.is_some() => {
+                self.covered += 1;
+                self.boxes_missed += u64::from(with_box);
+            }
+            None => self.out_of_time += 1,
+        }
+    }
+
+    /// The sum of two.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            runs: self.runs + other.runs,
+            covered: self.covered + other.covered,
+            walls_detected: self.walls_detected + other.walls_detected,
+            boxes_before_300: self.boxes_before_300 + other.boxes_before_300,
+            boxes_nearer: self.boxes_nearer + other.boxes_nearer,
+            boxes_by_shield: self.boxes_by_shield + other.boxes_by_shield,
+            held_by_wall: self.held_by_wall + other.held_by_wall,
+            out_of_time: self.out_of_time + other.out_of_time,
+            boxes_missed: self.boxes_missed + other.boxes_missed,
+            contacts: self.contacts + other.contacts,
+            classical_false: self.classical_false + other.classical_false,
+        }
+    }
 }
