@@ -2,10 +2,13 @@
 //! who was right about what the sonars heard.
 
 use crate::config::{HeadingSource, RobotConfig, Sonars};
-use crate::demo::{Summary, run_watched};
+use crate::demo::{Options, Summary, run_folder, run_watched};
+use crate::draw::{Picture, Plan, Stop, draw_planned};
+use crate::drive::Status;
 use crate::pilot::Pilot;
 use sidestep::config::Config;
 use sidestep::edge::{self, Edge, EdgeConfig, Event, PlannedEdge, Scan};
+use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
 use sidestep::preset;
 use sidestep::quantity::Instant;
@@ -14,9 +17,11 @@ use sidestep::view::View;
 use sidestep_sim::corridor::{self, Corridor};
 use sidestep_sim::geometry::{Point, Pose};
 use sidestep_sim::laser::{self, Laser};
+use sidestep_sim::scenario::Scenario;
 use sidestep_sim::simulation::Simulation;
 use sidestep_sim::world::{Body, Cone, World};
 use std::error::Error;
+use std::path::PathBuf;
 
 /// The law of a run: the route is a vector, the sonars are the front array of a P3-DX.
 pub type Driver = Edge<Vec<PlannedEdge>, 8>;
@@ -230,6 +235,19 @@ impl Course {
     }
 }
 
+impl Course {
+    /// What a robot that stands where the simulation ended has within the classical reach.
+    fn blamed(&self, simulation: &Simulation) -> Result<Option<Body>, Box<dyn Error>> {
+        let ring: Ring<8> = crate::base::ring(&self.config)?;
+        let pose = simulation.robot().base().pose();
+        Ok((0..8)
+            .filter(|&i| ring.sonars()[i].forward)
+            .filter_map(|i| truth(i, &ring, &pose, simulation.world(), &self.config))
+            .find(|(_, distance)| *distance < self.classical + 0.02)
+            .map(|(body, _)| body))
+    }
+}
+
 /// Gives a scan to a law that wants one.
 fn look(law: &mut Driver, scanner: &mut Laser, world: &World, pose: &Pose, now: u64) {
     let ranges = scanner.scan(world, pose);
@@ -296,6 +314,244 @@ fn decisive(
     };
     let sonar = (0..8).min_by(|a, b| miss(a).total_cmp(&miss(b)))?;
     truth(sonar, ring, pose, world, config)
+}
+
+// ------------------------------------------------------------------------- a classical detector
+
+/// The same way with a classical detector: whatever any forward sonar hears nearer than `reach` is
+/// in the way, and the robot stands as long as it is there.
+struct Classical {
+    /// Follows the edges, and detects nothing.
+    follow: Driver,
+    ring: Ring<8>,
+    reach: f32,
+    stopped: bool,
+}
+
+impl Law<8> for Classical {
+    fn advise(&mut self, view: &View<8>) -> Advice {
+        let advice = self.follow.advise(view);
+        let near = |i: &usize| {
+            self.ring.sonars()[*i].forward
+                && match view.sonar[*i] {
+                    SonarReading::Echo(range) => range.get() < self.reach,
+                    SonarReading::TooNear => true,
+                    _ => false,
+                }
+        };
+        self.stopped = (0..8).any(|i| near(&i));
+        if self.stopped { Advice::REST } else { advice }
+    }
+
+    fn mode(&self) -> &'static str {
+        if self.stopped {
+            "stopped"
+        } else {
+            self.follow.mode()
+        }
+    }
+}
+
+impl Course {
+    /// Drives it with the classical detector, for a minute at most.
+    ///
+    /// # Errors
+    /// If something in it is out of range.
+    pub fn run_classical(&self) -> Result<(Summary, Simulation), Box<dyn Error>> {
+        let scenario = Scenario {
+            time_limit_ms: 60_000,
+            ..self.corridor.scenario.clone()
+        };
+        let ring: Ring<8> = crate::base::ring(&self.config)?;
+        // Nothing projects more than 10.
+        let deaf = edge::Parameters {
+            threshold: 10.0,
+            held_time: 60.0,
+            ..self.edge
+        };
+        let law = Classical {
+            follow: Edge::new(
+                self.config.core,
+                EdgeConfig::new(deaf)?,
+                ring,
+                route(&scenario.start, &self.corridor.way)?,
+            )?,
+            ring,
+            reach: self.classical as f32,
+            stopped: false,
+        };
+        run_watched(&scenario, &self.config, law, |_, _, _| false)
+    }
+}
+
+// ----------------------------------------------------------------------------- the demonstration
+
+/// What the demonstration is called.
+pub const NAME: &str = "edge";
+
+/// What happened, in words; places in the world.
+fn words(happening: &Happening, start: &Pose) -> String {
+    let place = |point| {
+        let at = in_world(start, point);
+        format!("({:.2}, {:.2})", at.x, at.y)
+    };
+    match happening.event {
+        Event::Covered(k) => format!("edge {}: covered", k + 1),
+        Event::Detected(k, point) => format!("edge {}: an obstacle at {}", k + 1, place(point)),
+        Event::HeldUp(k, point) => {
+            format!("edge {}: held up by what is at {}", k + 1, place(point))
+        }
+        Event::Measured(k, found) => {
+            let free = found.gap.map_or(0.0, |gap| gap.width());
+            let size = found.obstacle.map_or_else(
+                || "not seen by the laser".to_owned(),
+                |seen| {
+                    let [along, across] = [seen.along, seen.across]
+                        .map(|[low, high]| format!("{:.0}", 1000.0 * (high - low)));
+                    format!("{along} mm long as far as seen and {across} mm wide")
+                },
+            );
+            let verdict = if found.passable {
+                "it goes round"
+            } else {
+                "no way"
+            };
+            format!(
+                "edge {}: the obstacle is {size}; {:.0} mm are free: {verdict}",
+                k + 1,
+                1000.0 * free
+            )
+        }
+        Event::Blocked(k) => format!("edge {}: blocked", k + 1),
+    }
+}
+
+/// The paper's corridors, three obstacles, and who gets through: S4's law, and the classical
+/// detector on the same way. Leaves a folder with both pictures.
+///
+/// # Errors
+/// If the folder cannot be written, if S4's robot does not cover every edge, or if anything was
+/// touched.
+pub fn demo(options: &Options, status: &mut Status) -> Result<PathBuf, Box<dyn Error>> {
+    // Another base than the default is somebody's choice.
+    let config = if options.config == RobotConfig::default() {
+        corridor_base()?
+    } else {
+        options.config
+    };
+    let mut robot = robot_for(&config);
+    robot.sonar.noise = options.knobs.sonar_noise;
+    let mut corridor = corridor::paper(options.knobs.seed, &robot)?;
+    corridor.scenario.sonar_faults = options.knobs.sonar_faults;
+    let course = Course {
+        corridor,
+        laser: Some(laser::Parameters::default()),
+        config,
+        edge: edge::PAPER,
+        classical: 0.42,
+        until: |event| matches!(event, Event::Blocked(_)),
+    };
+    let scenario = &course.corridor.scenario;
+    let folder = run_folder(&options.out, NAME)?;
+    status.keep(&format!(
+        "== {NAME}: {}\n   pictures in {}",
+        scenario.description,
+        folder.display()
+    ));
+    let run = course.run()?;
+    let mut text = run.summary.text(scenario);
+    let mut stops = Vec::new();
+    for happening in &run.happenings {
+        let reason = words(happening, &scenario.start);
+        let line = format!("{:7.1} s  {reason}", happening.t as f64 / 1000.0);
+        status.keep(&line);
+        text += &line;
+        text.push('\n');
+        stops.push(Stop {
+            t: happening.t,
+            reason,
+        });
+    }
+    let marks: Vec<(Point, String)> = run
+        .classical
+        .iter()
+        .filter(|stop| course.is_wall(stop.body))
+        .map(|stop| (stop.pose.position, "classical: a wall".to_owned()))
+        .collect();
+    let said = format!(
+        "on this run a classical detector ({:.0} mm on any forward sonar) would have taken a wall for \
+         an obstacle {} times",
+        1000.0 * course.classical,
+        marks.len()
+    );
+    status.keep(&said);
+    text += &said;
+    text.push('\n');
+    let notes: Vec<String> = run
+        .summary
+        .text(scenario)
+        .lines()
+        .skip(1)
+        .map(str::to_owned)
+        .collect();
+    let plan = |marks| Plan {
+        way: &course.corridor.way,
+        marks,
+    };
+    let picture =
+        |simulation: &Simulation, title: &str, notes: &[String], stops: &[Stop], marks| {
+            draw_planned(
+                &Picture {
+                    title,
+                    notes,
+                    world: simulation.world(),
+                    trace: simulation.trace(),
+                    goal: scenario.goal,
+                    robot_radius: f64::from(config.core.robot_radius),
+                    stops,
+                },
+                &plan(marks),
+            )
+        };
+    let title = format!("S4's law: {}", scenario.description);
+    let drawn = picture(&run.simulation, &title, &notes, &stops, &marks);
+    std::fs::write(folder.join("picture.svg"), drawn)?;
+
+    let (summary, simulation) = course.run_classical()?;
+    let last = simulation.robot().base().pose();
+    let near = course.blamed(&simulation)?;
+    let outcome = match (summary.tally.arrived, near) {
+        (Some(_), _) => "the classical detector gets through".to_owned(),
+        (None, Some(body)) => format!(
+            "the classical detector stops for good at ({:.2}, {:.2}), before {}",
+            last.position.x,
+            last.position.y,
+            if course.is_wall(body) {
+                "a wall"
+            } else {
+                "an obstacle"
+            }
+        ),
+        (None, None) => "the classical detector does not get through in a minute".to_owned(),
+    };
+    status.keep(&outcome);
+    text += &outcome;
+    text.push('\n');
+    let title = format!("Classical detector: {}", scenario.description);
+    let drawn = picture(&simulation, &title, &[outcome], &[], &[]);
+    std::fs::write(folder.join("classical.svg"), drawn)?;
+    std::fs::write(folder.join("summary.txt"), &text)?;
+    status.keep(&format!(
+        "pictures: {0}/picture.svg {0}/classical.svg",
+        folder.display()
+    ));
+    if run.summary.contacts_while_moving() > 0 {
+        return Err("the robot touched something while it moved".into());
+    }
+    if run.summary.tally.arrived.is_none() {
+        return Err("the way was not covered".into());
+    }
+    Ok(folder)
 }
 
 // --------------------------------------------------------------------------- corridors by number

@@ -4,6 +4,7 @@ use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
+use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
 use sidestep_hw::pilot::{Pilot, settings};
@@ -40,7 +41,8 @@ enum Command {
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
-    /// people; needs --data).
+    /// people; needs --data); edge (S4: a planned way through corridors with three obstacles, and a
+    /// classical detector on the same way; no pseudo-terminal and no log).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -260,6 +262,10 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
+    if options.scenario == edge::NAME {
+        edge::demo(options, &mut status)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut contacts = 0;
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;

@@ -107,7 +107,7 @@ pub fn paper(seed: u64, robot: &robot::Parameters) -> Result<Corridor, Error> {
     let way = [(1.0, 3.0), (3.0, 3.0), (5.0, 3.0), (5.0, 7.0), (1.0, 7.0)];
     let way = way.map(|(x, y)| Point::new(x, y)).to_vec();
     let description = "S4's corridors, 1200 mm wide, with three obstacles".to_owned();
-    let start = Pose::new(1.0, 3.15, -0.35);
+    let start = Pose::new(1.0, 3.25, -0.35);
     Ok(corridor(
         "edge",
         description,
