@@ -917,7 +917,7 @@ const LOOKS_MAX: u32 = 4;
 const PROGRESS: f32 = 0.3;
 
 /// Heading error up to which a leg is driven; above it the robot turns on the spot, rad.
-const TURNED: f32 = 0.15;
+pub const TURNED: f32 = 0.15;
 
 /// A leg ends this much before its end point, m.
 const LEG_END: f32 = 0.03;
@@ -1383,6 +1383,17 @@ pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice 
     }
 }
 
+/// What a state lets through of a wish to move: nothing at all where it rests, or where the detector
+/// is blind.
+#[must_use]
+pub fn permitted(state: State, sees: bool, wish: Advice) -> Advice {
+    if state.at_rest() || !sees {
+        Advice::REST
+    } else {
+        wish
+    }
+}
+
 /// The turn, in the robot's frame, towards the point of `line` that is `look_ahead` (m) ahead of
 /// where the robot is along it, or towards its end if that comes first.
 fn turn_to(line: &PlannedEdge, pose: &Pose, look_ahead: f32) -> f32 {
@@ -1497,20 +1508,10 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
         if self.state != before {
             self.enter(&edge, view, detected, hindrance);
         }
-        if self.state.at_rest() {
-            self.told_to_move = false;
-            return Advice::REST;
-        }
-        if self.state != before && (leg || self.state == State::SubRoute) {
-            // The line is another now: look along it in the next tick.
-            self.told_to_move = false;
-            return Advice::REST;
-        }
-        let advice = if hears {
-            self.drive(&line, leg, &pose)
-        } else {
-            Advice::REST
-        };
+        // Where the line is another now, look along it first.
+        let same_line = self.state == before || !(leg || self.state == State::SubRoute);
+        let wish = self.drive(&line, leg, &pose);
+        let advice = permitted(self.state, hears && same_line, wish);
         self.told_to_move = advice != Advice::REST;
         advice
     }

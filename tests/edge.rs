@@ -860,6 +860,47 @@ fn law_goes_through_its_states() {
     }
 }
 
+/// Something that was there and has left: the robot follows the edge again.
+#[test]
+fn what_has_left_is_forgotten() {
+    let route = vec![edge([0.0, 0.0], [3.0, 0.0])];
+    let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
+    let mut view = quiet_view();
+    view.pose = pose(0.0, 0.0, 0.0);
+    view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+    driver.advise(&view);
+    view.sonar[4] = echo(0.35);
+    for now in [100, 200, 300] {
+        view.now = Instant(now);
+        driver.advise(&view);
+    }
+    assert_eq!(driver.state(), State::Measure);
+    let ranges = vec![f32::INFINITY; 361];
+    let placement = Placement {
+        x: 0.0,
+        y: 0.0,
+        heading: 0.0,
+    };
+    let first = -std::f32::consts::FRAC_PI_2;
+    let scan = Scan::new(placement, first, 0.0087, 8.0, &ranges, Instant(350)).expect("a scan");
+    // As long as the sonar hears it, it is there, whatever the laser says.
+    driver.take_scan(&scan);
+    let mut still_there = driver.clone();
+    let mut states = Vec::new();
+    for now in [400, 500, 600, 700] {
+        view.now = Instant(now);
+        still_there.advise(&view);
+        states.push(still_there.state());
+    }
+    assert!(!states.contains(&State::FollowEdge), "{states:?}");
+    view.sonar[4] = SonarReading::NoEcho(Length::MAX);
+    for now in [400, 500, 600] {
+        view.now = Instant(now);
+        driver.advise(&view);
+    }
+    assert_eq!(driver.state(), State::FollowEdge);
+}
+
 /// Routes with holes are refused, with the number.
 #[test]
 fn routes_are_checked() {

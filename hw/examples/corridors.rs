@@ -4,7 +4,10 @@
 //! is the range (m) below which the classical detector stops, which looks on in the same runs. Ends
 //! with an error if a wall was detected or anything was touched.
 
-use sidestep_hw::edge::{Corridors, random};
+use sidestep::config::{Config, Parameters};
+use sidestep::preset;
+use sidestep_hw::config::RobotConfig;
+use sidestep_hw::edge::{Corridors, corridor_base, narrowest, random};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -23,8 +26,43 @@ fn main() -> Result<(), Box<dyn Error>> {
         wrong += sum.walls_detected + sum.contacts;
         println!("{}", text(&sum, with_box, classical));
     }
+    passages()?;
     if wrong > 0 {
         return Err(format!("{wrong} walls detected or things touched").into());
+    }
+    Ok(())
+}
+
+/// What the shield lets through.
+fn passages() -> Result<(), Box<dyn Error>> {
+    let corridor = corridor_base()?;
+    let pioneer = Parameters {
+        min_distance: 0.05,
+        turn_distance: 0.1,
+        ..preset::PIONEER_3DX
+    };
+    let trusting = Parameters {
+        still_speed_max: preset::CORRIDOR_BASE.still_speed_max,
+        range_error: preset::CORRIDOR_BASE.range_error,
+        resume_clearance: preset::CORRIDOR_BASE.resume_clearance,
+        ..pioneer
+    };
+    println!("narrowest way past an obstacle in a corridor of 1200 mm:");
+    for (name, core) in [
+        (
+            "a base of 0.2 m radius, still things up to 0.05 m/s",
+            *corridor.core.parameters(),
+        ),
+        ("a P3-DX (0.301 m), still things up to 0.05 m/s", trusting),
+        ("a P3-DX, still things up to 0.3 m/s", pioneer),
+    ] {
+        let config = RobotConfig {
+            core: Config::new(core)?,
+            ..corridor
+        };
+        let narrowest = narrowest(&config)?;
+        let width = narrowest.map_or("none".to_owned(), |mm| format!("{mm} mm"));
+        println!("  {name}: {width}");
     }
     Ok(())
 }

@@ -476,7 +476,7 @@ pub fn demo(options: &Options, status: &mut Status) -> Result<PathBuf, Box<dyn E
         .classical
         .iter()
         .filter(|stop| course.is_wall(stop.body))
-        .map(|stop| (stop.pose.position, "classical: a wall".to_owned()))
+        .map(|stop| (stop.pose.position, String::new()))
         .collect();
     let said = format!(
         "on this run a classical detector ({:.0} mm on any forward sonar) would have taken a wall for \
@@ -487,13 +487,14 @@ pub fn demo(options: &Options, status: &mut Status) -> Result<PathBuf, Box<dyn E
     status.keep(&said);
     text += &said;
     text.push('\n');
-    let notes: Vec<String> = run
+    let mut notes: Vec<String> = run
         .summary
         .text(scenario)
         .lines()
         .skip(1)
         .map(str::to_owned)
         .collect();
+    notes.push("dots: here a classical detector would have stopped for a wall".to_owned());
     let plan = |marks| Plan {
         way: &course.corridor.way,
         marks,
@@ -538,7 +539,13 @@ pub fn demo(options: &Options, status: &mut Status) -> Result<PathBuf, Box<dyn E
     text += &outcome;
     text.push('\n');
     let title = format!("Classical detector: {}", scenario.description);
-    let drawn = picture(&simulation, &title, &[outcome], &[], &[]);
+    let stopped = simulation.trace().iter().rev();
+    let since = stopped.take_while(|sample| sample.speed == 0.0).last();
+    let stops = [Stop {
+        t: since.map_or(0, |sample| sample.time_ms),
+        reason: outcome.clone(),
+    }];
+    let drawn = picture(&simulation, &title, &[outcome], &stops, &[]);
     std::fs::write(folder.join("classical.svg"), drawn)?;
     std::fs::write(folder.join("summary.txt"), &text)?;
     status.keep(&format!(
@@ -555,6 +562,41 @@ pub fn demo(options: &Options, status: &mut Status) -> Result<PathBuf, Box<dyn E
 }
 
 // --------------------------------------------------------------------------- corridors by number
+
+/// A robot before an obstacle that leaves `free` m, with a scanner without noise that resolves a
+/// millimetre.
+///
+/// # Errors
+/// If the simulation refuses something.
+pub fn narrowed(free: f64, config: &RobotConfig, seed: u64) -> Result<Course, Box<dyn Error>> {
+    Ok(Course {
+        corridor: corridor::narrowed(free, seed, &robot_for(config))?,
+        laser: Some(laser::Parameters {
+            step: 0.1_f64.to_radians(),
+            noise: 0.0,
+            ..laser::Parameters::default()
+        }),
+        config: *config,
+        edge: edge::PAPER,
+        classical: 0.42,
+        until: |event| matches!(event, Event::Blocked(_)),
+    })
+}
+
+/// The narrowest way past an obstacle (mm, in steps of 10 from 600) that a robot gets through in a
+/// corridor of 1200 mm, where that is the shield's decision; none if there is none.
+///
+/// # Errors
+/// If the simulation refuses something.
+pub fn narrowest(config: &RobotConfig) -> Result<Option<u32>, Box<dyn Error>> {
+    for free in (601..1160).step_by(10) {
+        let run = narrowed(f64::from(free) / 1000.0, config, 1)?.run()?;
+        if run.summary.tally.arrived.is_some() {
+            return Ok(Some(free));
+        }
+    }
+    Ok(None)
+}
 
 /// A corridor made up from a seed, until something is detected, or holds the robot up.
 ///
