@@ -7,6 +7,7 @@ use super::view::{PIONEER, any_reading};
 use sidestep::edge::{self, Detection, EdgeConfig, Finding, PAPER, Situation, State};
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
+use sidestep::quantity::Length;
 use sidestep_spec::edge as law;
 
 /// The paper's numbers: checked as this is compiled.
@@ -69,17 +70,38 @@ pub fn blind_is_never_clear() {
         CONFIG.distance_max,
         heard(sonar[0]) && heard(sonar[1])
     ));
-    match detection {
-        Detection::Obstacle {
-            sonar: at,
-            greatest,
-        } => {
-            assert!(at < 2 && greatest > CONFIG.threshold && greatest <= 10.0);
-            kani::cover!(at == 1, "the second sonar is decisive");
-            kani::cover!(!heard(sonar[0]), "although the first is not heard");
-        }
-        Detection::Clear { greatest } => assert!(greatest <= CONFIG.threshold),
-        Detection::Blind(_) => kani::cover!(distance == 0.0, "blind on the edge"),
+    if let Some(closeness) = edge::closeness(distance, &CONFIG) {
+        let value = |i: usize| {
+            let range = match sonar[i] {
+                SonarReading::Echo(range) => range,
+                SonarReading::TooNear => Length::ZERO,
+                _ => return 0.0,
+            };
+            edge::projection(edge::nearness(range, &CONFIG), closeness, cosines[i])
+        };
+        let projections = [value(0), value(1)];
+        let (reported, at) = match detection {
+            Detection::Obstacle { sonar, greatest } => (Some(greatest), sonar),
+            _ => (None, 0),
+        };
+        assert!(law::obstacle_is_greatest(
+            reported,
+            &projections,
+            CONFIG.threshold
+        ));
+        assert!(at < 2);
+        kani::cover!(
+            reported.is_some() && at == 1,
+            "the second sonar is decisive"
+        );
+        kani::cover!(
+            reported.is_some() && !heard(sonar[0]),
+            "although the first is not heard"
+        );
+        kani::cover!(
+            matches!(detection, Detection::Blind(_)),
+            "blind on the edge"
+        );
     }
 }
 

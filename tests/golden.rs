@@ -472,6 +472,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
         .expect("a configuration")
     };
     let computed = match (equation, variant) {
+        //= edge.INV-1
         ("S4.E1", "lit") => {
             let (r, most) = (i.number("r_mm"), i.number("range_max_mm"));
             let core = edge::nearness(range(r), &config(most, 300.0));
@@ -480,6 +481,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("N1", number(f64::from(core)))]),
             }
         }
+        //= edge.INV-2
         ("S4.E2", variant @ ("lit" | "rec")) => {
             let (d, most) = (i.number("d_mm"), i.number("d_max_mm"));
             let core = edge::closeness(metres(d), &config(600.0, most));
@@ -502,6 +504,8 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 }
             }
         }
+        //= edge.INV-3
+        //= edge.INV-7
         ("S4.E4", "rec") => {
             let (r, d, alpha) = (i.number("r_mm"), i.number("d_mm"), i.number("alpha_deg"));
             let (most, off) = (i.number("range_max_mm"), i.number("d_max_mm"));
@@ -567,6 +571,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= edge.INV-5
         ("S4.wall_bound", "derived") => {
             let (width, d) = (i.number("W_mm"), i.number("d_mm"));
             let rho = i.number("rho_mm");
@@ -580,6 +585,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= edge.INV-4
         ("S4.detect_range", "derived") => {
             let (d, alpha) = (i.number("d_mm"), i.number("alpha_deg"));
             let threshold = i.number("threshold");
@@ -589,6 +595,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= edge.INV-13
         ("S4.freeway", "rec") => {
             let ([right, left], safe) = (pair(&i.0["gap_mm"]), i.number("safe_path_mm"));
             let (width, middle, passable) = spec::edge::free_gap(right, left, safe);

@@ -133,6 +133,7 @@ fn text(sum: &Corridors, with_box: bool, classical: f64) -> String {
     }
     lines.extend([
         format!("  held up by the shield, beside a wall: {}", sum.held_by_wall),
+        format!("  stopped for good by a latched stop of the shield: {}", sum.latched),
         format!("  nothing happened in 60 s: {}", sum.out_of_time),
         format!("  contacts while moving: {}", sum.contacts),
         format!(

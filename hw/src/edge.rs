@@ -8,6 +8,7 @@ use crate::drive::Status;
 use crate::pilot::Pilot;
 use sidestep::config::Config;
 use sidestep::edge::{self, Edge, EdgeConfig, Event, PlannedEdge, Scan};
+use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
 use sidestep::preset;
@@ -130,6 +131,8 @@ pub struct Run {
     /// The first moment, of each time that it begins, at which a classical detector would have
     /// stopped.
     pub classical: Vec<ClassicalStop>,
+    /// What latched a stop of the shield, and ended the run, if anything did.
+    pub latched: Option<StopReason>,
 }
 
 impl Course {
@@ -161,6 +164,7 @@ impl Course {
         let mut classical = Vec::new();
         let mut warned: Option<Body> = None;
         let mut looked_at = None;
+        let mut latched = None;
         let (summary, simulation) = run_watched(
             scenario,
             &self.config,
@@ -180,7 +184,11 @@ impl Course {
                     }
                     warned = found;
                 }
-                let mut ends = false;
+                latched = pilot
+                    .latest()
+                    .filter(|decision| decision.action == Action::LatchedStop)
+                    .and_then(|decision| decision.stop);
+                let mut ends = latched.is_some();
                 while let Some(event) = pilot.law_mut().next_event() {
                     let heard = view.and_then(|view| {
                         decisive(
@@ -213,6 +221,7 @@ impl Course {
             simulation,
             happenings,
             classical,
+            latched,
         })
     }
 
@@ -633,6 +642,8 @@ pub struct Corridors {
     pub boxes_by_shield: u64,
     /// The shield held the robot up for a wall.
     pub held_by_wall: u64,
+    /// The shield latched a stop, taking a jump of a reading for somebody too fast, say.
+    pub latched: u64,
     /// Runs that were over before anything happened.
     pub out_of_time: u64,
     /// Runs to the end of the edge although a box was on it.
@@ -672,6 +683,7 @@ impl Corridors {
                 self.covered += 1;
                 self.boxes_missed += u64::from(with_box);
             }
+            None if run.latched.is_some() => self.latched += 1,
             None => self.out_of_time += 1,
         }
     }
@@ -687,6 +699,7 @@ impl Corridors {
             boxes_nearer: self.boxes_nearer + other.boxes_nearer,
             boxes_by_shield: self.boxes_by_shield + other.boxes_by_shield,
             held_by_wall: self.held_by_wall + other.held_by_wall,
+            latched: self.latched + other.latched,
             out_of_time: self.out_of_time + other.out_of_time,
             boxes_missed: self.boxes_missed + other.boxes_missed,
             contacts: self.contacts + other.contacts,
