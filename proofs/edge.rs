@@ -16,14 +16,11 @@ const CONFIG: EdgeConfig = match EdgeConfig::new(PAPER) {
     Err(_) => panic!("the paper's numbers are out of range"),
 };
 
-/// E1 to E4 for any range, and any bits as distance and cosine; W2's arithmetic.
+/// E1 for any range.
 //= edge.INV-1
-//= edge.INV-2
-//= edge.INV-3
-//= edge.INV-4
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
-pub fn projections_are_bounded() {
+pub fn nearness_is_bounded() {
     let range = any_length();
     let nearness = edge::nearness(range, &CONFIG);
     assert!(law::nearness_in_range(
@@ -31,6 +28,15 @@ pub fn projections_are_bounded() {
         range.get(),
         CONFIG.range_max
     ));
+    kani::cover!(nearness > 9.0, "near");
+    kani::cover!(nearness == 0.0, "far");
+}
+
+/// E2 for any bits as distance.
+//= edge.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn closeness_is_bounded() {
     let distance: f32 = kani::any();
     let closeness = edge::closeness(distance, &CONFIG);
     assert!(law::closeness_in_range(
@@ -38,19 +44,54 @@ pub fn projections_are_bounded() {
         distance,
         CONFIG.distance_max
     ));
-    if let Some(closeness) = closeness {
-        let projection = edge::projection(nearness, closeness, kani::any());
-        assert!(law::projection_in_range(projection, closeness));
-        assert!(law::far_is_harmless(
-            projection,
-            range.get(),
-            CONFIG.range_max,
-            CONFIG.threshold
-        ));
-        kani::cover!(projection > CONFIG.threshold, "above the threshold");
-        kani::cover!(projection == 0.0 && nearness > 9.0, "near, and behind");
-    }
+    kani::cover!(closeness.is_some() && distance < 0.0, "on the right");
     kani::cover!(closeness.is_none() && distance.is_nan(), "no distance");
+}
+
+/// Any value of E2, as far as `closeness_is_bounded` shows it.
+fn any_closeness() -> f32 {
+    let closeness = kani::any();
+    kani::assume(law::closeness_in_range(
+        Some(closeness),
+        0.0,
+        CONFIG.distance_max,
+    ));
+    closeness
+}
+
+/// E4 for any values of E1 and E2 and any bits as cosine.
+//= edge.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn projection_is_bounded() {
+    let nearness: f32 = kani::any();
+    kani::assume(law::nearness_in_range(nearness, 0.0, CONFIG.range_max));
+    let closeness = any_closeness();
+    let projection = edge::projection(nearness, closeness, kani::any());
+    assert!(law::projection_in_range(projection, closeness));
+    kani::cover!(projection > CONFIG.threshold, "above the threshold");
+    kani::cover!(projection == 0.0 && nearness > 9.0, "near, and behind");
+}
+
+/// W2's arithmetic: any echo from far enough, any value of E2, any bits as cosine.
+//= edge.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+pub fn far_is_harmless() {
+    let range = any_length();
+    let nearness = edge::nearness(range, &CONFIG);
+    let projection = edge::projection(nearness, any_closeness(), kani::any());
+    assert!(law::far_is_harmless(
+        projection,
+        range.get(),
+        CONFIG.range_max,
+        CONFIG.threshold
+    ));
+    kani::cover!(projection > CONFIG.threshold, "nearer than that");
+    kani::cover!(
+        projection > 0.0 && range.get() > 0.5,
+        "farther, and it counts"
+    );
 }
 
 /// The detector on two sonars with any readings, any bits as cosines, at any distance.
