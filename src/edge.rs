@@ -984,6 +984,8 @@ pub struct Edge<R, const N: usize> {
     standing_since: Option<Instant>,
     /// It was told to move.
     told_to_move: bool,
+    /// Since when it has stood all the same.
+    kept_since: Option<Instant>,
     /// How often it has looked at the scan without getting on.
     looks: u32,
     /// How far along the edge it has come, m.
@@ -1017,6 +1019,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
             way_back: None,
             standing_since: None,
             told_to_move: false,
+            kept_since: None,
             looks: 0,
             furthest: f32::NEG_INFINITY,
             events: [None; EVENTS],
@@ -1433,7 +1436,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
             State::FollowEdge | State::Rejoin | State::OffEdge
         );
         let edges = self.route.as_ref().len();
-        while moves_on
+        if moves_on
             && self.at + 1 < edges
             && self
                 .edge_now()
@@ -1480,12 +1483,12 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
 
         // Held up: told to go, and standing all the same, for no reason but distance.
         let waits = view.guard.is_some_and(|reason| !reason.may_turn());
-        let held = self.told_to_move
-            && !waits
-            && self.standing_since.is_some_and(|since| {
-                let stood = view.now.since(since).unwrap_or(0);
-                stood >= milliseconds(self.edge.held_time)
-            });
+        let kept = self.told_to_move && standing && !waits;
+        self.kept_since = kept.then(|| self.kept_since.unwrap_or(view.now));
+        let held = self.kept_since.is_some_and(|since| {
+            let stood = view.now.since(since).unwrap_or(0);
+            stood >= milliseconds(self.edge.held_time)
+        });
         let hindrance = if held {
             self.hindrance(view, &cosines)
         } else {

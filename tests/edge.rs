@@ -8,6 +8,7 @@ use sidestep::edge::{
     self, ActualEdge, Blindness, Detection, Edge, EdgeConfig, Event, Finding, FreeWay, Gap, PAPER,
     Parameters, PlannedEdge, Scan, Situation, State,
 };
+use sidestep::failsafe::StopReason;
 use sidestep::law::Law;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
@@ -900,6 +901,41 @@ fn what_has_left_is_forgotten() {
         driver.advise(&view);
     }
     assert_eq!(driver.state(), State::FollowEdge);
+}
+
+/// Whoever is told to go and stands is held up, but not by what has nothing to do with distance.
+#[test]
+fn who_is_held_up_measures() {
+    for (guard, state) in [
+        (None, State::Stopped),
+        (Some(StopReason::MotorsDisabled), State::FollowEdge),
+    ] {
+        let route = vec![edge([0.0, 0.0], [3.0, 0.0])];
+        let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
+        let mut view = quiet_view();
+        view.pose = pose(0.0, 0.0, 0.0);
+        view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        view.sonar[1] = echo(0.5);
+        view.guard = guard;
+        for now in (0..3000).step_by(100) {
+            view.now = Instant(now);
+            driver.advise(&view);
+            assert_eq!(driver.state(), State::FollowEdge);
+        }
+        view.now = Instant(3100);
+        driver.advise(&view);
+        assert_eq!(driver.state(), state);
+        // What kept it is over: the time before does not count.
+        view.guard = None;
+        view.now = Instant(3200);
+        driver.advise(&view);
+        let expected = if state == State::Stopped {
+            State::Measure
+        } else {
+            State::FollowEdge
+        };
+        assert_eq!(driver.state(), expected);
+    }
 }
 
 /// Routes with holes are refused, with the number.
