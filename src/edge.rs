@@ -153,6 +153,9 @@ pub struct ActualEdge {
     pub distance: f32,
 }
 
+/// A sonar whose axis has a greater part backward than this looks back; what is less floats round.
+const LOOKS_BACK: f32 = 0.01;
+
 /// Shortest actual edge that has a direction, m.
 const SHORTEST_ACTUAL: f32 = 0.001;
 
@@ -169,12 +172,16 @@ impl ActualEdge {
         })
     }
 
-    /// cos α of every sonar of a ring: dot products of unit vectors.
+    /// cos α of every sonar of a ring: dot products of unit vectors. Sonars behind the centre of
+    /// rotation, or that look back, take no part: 0. S4 has the front array, and W1 is about its
+    /// reach.
     #[must_use]
     pub fn cosines<const N: usize>(&self, ring: &Ring<N>) -> [f32; N] {
         let mut cosines = [0.0; N];
         for (cosine, sonar) in cosines.iter_mut().zip(ring.sonars()) {
-            *cosine = sonar.axis.dot(&self.direction);
+            if sonar.position.x >= 0.0 && sonar.axis.x >= -LOOKS_BACK {
+                *cosine = sonar.axis.dot(&self.direction);
+            }
         }
         cosines
     }

@@ -519,6 +519,27 @@ fn no_side_wall_is_an_obstacle() {
     assert!(!law::wall_is_harmless(narrow.wall_bound(400)));
 }
 
+/// Of sixteen sonars the eight in front take part, whichever way the robot looks.
+#[test]
+fn rear_sonars_take_no_part() {
+    let mut placements = [Placement {
+        x: 0.0,
+        y: 0.0,
+        heading: 0.0,
+    }; 16];
+    for (placement, at) in placements.iter_mut().zip(BaseParameters::P3DX.sonars) {
+        *placement = Placement::from_mm_deg(at.x_mm, at.y_mm, at.heading_deg);
+    }
+    let all = Ring::new(&placements, &base()).expect("the ring is good");
+    for degrees in (-180..180).step_by(10) {
+        let here = pose(0.0, 0.1, degrees as f32);
+        let actual = ActualEdge::new(&here, &edge([0.0, 0.0], [3.0, 0.0])).expect("an edge");
+        let cosines = actual.cosines(&all);
+        assert_eq!(cosines[..8], actual.cosines(&ring())[..]);
+        assert_eq!(cosines[8..], [0.0; 8]);
+    }
+}
+
 /// The bound is one: what the P3-DX's ring hears of walls, by ray casting and the core, stays under
 /// it, and comes near it.
 //= edge.INV-5
