@@ -112,8 +112,8 @@ impl EdgeConfig {
 pub fn nearness(range: Length, config: &EdgeConfig) -> f32 {
     let left = config.range_max - range.get();
     if left > 0.0 {
-        // In this order nothing is rounded up past 10, nor past the threshold at 0.7·R (W2).
-        10.0 * left / config.range_max
+        // In this order W2 holds at 0.7·R to the last bits; a range of 0 may round past 10.
+        (10.0 * left / config.range_max).min(10.0)
     } else {
         0.0
     }

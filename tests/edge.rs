@@ -346,7 +346,8 @@ proptest! {
         prop_assert!((seen.along[0] - (front / 1000.0) as f32).abs() < 0.005, "{seen:?}");
         prop_assert!((seen.across[0] - (right / 1000.0) as f32).abs() < 0.01, "{seen:?}");
         prop_assert!((seen.across[1] - (left / 1000.0) as f32).abs() < 0.01, "{seen:?}");
-        prop_assert_eq!(found.passable, gap >= 0.6 - 1e-6);
+        prop_assert_eq!(found.passable, found.gap.expect("a gap").is_passable(0.6));
+        prop_assert!(law::gap_is_free(0.0, gap, found.passable, 0.6, &[]));
     }
 }
 
