@@ -18,6 +18,7 @@ use crate::kani;
 pub mod arcos;
 pub mod avoid;
 pub mod decide;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
 pub mod math;

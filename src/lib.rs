@@ -22,6 +22,7 @@ pub mod avoid;
 pub mod config;
 pub mod controller;
 pub mod decide;
+pub mod edge;
 pub mod escape;
 pub mod failsafe;
 pub mod kinematics;

@@ -20,6 +20,7 @@ const TARGETS: &[(&str, Target)] = &[
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
     ("decide", targets::decide::run),
+    ("edge", targets::edge::run),
     ("shield", targets::shield::run),
 ];
 

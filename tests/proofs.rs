@@ -134,6 +134,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         predictions_stay_on_the_simplex, table_2_never_stops, expected_losses_are_between,
         ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move,
         losses_at_a_distance_are_between;
+    edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
+        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;

@@ -9,6 +9,7 @@ pub mod avoid;
 pub mod bytes;
 pub mod controller;
 pub mod decide;
+pub mod edge;
 pub mod reference;
 pub mod settings;
 pub mod shield;

@@ -62,7 +62,9 @@ impl Summary {
         driving.people + driving.obstacles + turning.people + turning.obstacles
     }
 
-    fn text(&self, scenario: &Scenario) -> String {
+    /// What came of it, in lines.
+    #[must_use]
+    pub fn text(&self, scenario: &Scenario) -> String {
         let mut text = String::new();
         let least = self.outcome.minimum_clearance_while_driving;
         let clearance = |metres: f64| {
@@ -149,7 +151,10 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
 }
 
 /// A folder that did not exist, named after a scenario and numbered.
-fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+///
+/// # Errors
+/// If no folder can be made.
+pub fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {
@@ -305,8 +310,22 @@ pub fn run_in_memory<L: Law<16>>(
     config: &RobotConfig,
     law: L,
 ) -> Result<(Summary, Simulation), Box<dyn Error>> {
+    run_watched(scenario, config, law, |_, _, _| false)
+}
+
+/// The same with a robot of `N` sonars and somebody who looks on, after every step: with the pilot,
+/// the simulation, and the time in ms. The run ends when they say so.
+///
+/// # Errors
+/// If the scenario does not make a simulation, or its goal is out of range.
+pub fn run_watched<L: sidestep::law::Law<N>, const N: usize>(
+    scenario: &Scenario,
+    config: &RobotConfig,
+    law: L,
+    mut watch: impl FnMut(&mut Pilot<L, N>, &Simulation, u64) -> bool,
+) -> Result<(Summary, Simulation), Box<dyn Error>> {
     let mut simulation = scenario.simulate()?;
-    let mut pilot = Pilot::<L, 16>::with_law(
+    let mut pilot = Pilot::<L, N>::with_law(
         law,
         *config,
         goal_from_start(scenario),
@@ -328,6 +347,9 @@ pub fn run_in_memory<L: Law<16>>(
             }
         }
         while pilot.next_event().is_some() {}
+        if watch(&mut pilot, &simulation, now) {
+            break;
+        }
         if pilot.tally().arrived.is_some() {
             ending = Ending::Arrived;
             break;

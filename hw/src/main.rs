@@ -5,6 +5,7 @@ use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::decide;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
+use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
 use sidestep_hw::pilot::{Pilot, settings};
@@ -42,7 +43,9 @@ enum Command {
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
     /// people; needs --data), decide (S2's experiment with its decision and a noisy sonar; leaves
-    /// timeline.svg too: belief, decision and distance over time).
+    /// timeline.svg too: belief, decision and distance over time), edge (S4: a planned way through
+    /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
+    /// and no log).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -271,6 +274,10 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
+    if options.scenario == edge::NAME {
+        edge::demo(options, &mut status)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut contacts = 0;
     if options.scenario == decide::NAME {
         let (folder, touched) = decide::demonstrate(options, &SIGNALS, &mut status)?;

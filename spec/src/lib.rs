@@ -15,6 +15,7 @@
 pub mod arcos;
 pub mod avoid;
 pub mod decide;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
 pub mod math;
