@@ -19,6 +19,7 @@ pub mod arcos;
 pub mod avoid;
 pub mod failsafe;
 pub mod kinematics;
+pub mod lms200;
 pub mod math;
 pub mod monitor;
 pub mod shield;

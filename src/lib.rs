@@ -25,6 +25,7 @@ pub mod escape;
 pub mod failsafe;
 pub mod kinematics;
 pub mod law;
+pub mod lms200;
 pub mod math;
 pub mod monitor;
 pub mod observation;
@@ -32,6 +33,7 @@ pub mod preset;
 pub mod quantity;
 pub mod ring;
 pub mod shield;
+pub mod stream;
 pub mod track;
 pub mod view;
 
