@@ -21,6 +21,7 @@ pub mod arcos;
 pub mod avoid;
 pub mod config;
 pub mod controller;
+pub mod edge;
 pub mod escape;
 pub mod failsafe;
 pub mod kinematics;
