@@ -14,6 +14,7 @@
 
 pub mod arcos;
 pub mod avoid;
+pub mod coverage;
 pub mod failsafe;
 pub mod kinematics;
 pub mod lms200;
