@@ -24,6 +24,8 @@ pub struct Rules {
     /// A passage that leads nowhere and adds less than this to what is seen from where it begins
     /// is not driven.
     pub protrusion_min: f64,
+    /// Junctions nearer to each other than this are one.
+    pub junction_min: f64,
     /// A passage is drawn by straight legs that are no farther from it than this.
     pub deviation_max: f64,
 }
@@ -36,6 +38,7 @@ impl Default for Rules {
             ahead_min: 0.5882,
             ahead_angle: 65_f64.to_radians(),
             protrusion_min: 0.3,
+            junction_min: 0.1,
             deviation_max: 0.03,
         }
     }
@@ -137,6 +140,7 @@ impl Roadmap {
         let skeleton = voronoi::skeleton(&floor.walls)?;
         let mut web = wide_enough(&skeleton, rules.clearance_min);
         prune(&mut web, rules);
+        contract(&mut web, rules.junction_min);
         let home = begin(&mut web, floor)?;
         let whole: f64 = web.edge_weights().map(Chain::length).sum();
         let reached = reach(&web, home);
@@ -191,23 +195,17 @@ impl Roadmap {
             let Some((source, target)) = self.graph.edge_endpoints(edge) else {
                 continue;
             };
-            let degree = |node| self.graph.neighbors_undirected(node).count();
-            let dead = [degree(source) == 1, degree(target) == 1];
+            // A place where a ring begins and nothing else does is not the end of anything.
+            let is_dead = |node| source != target && self.graph.edges(node).count() == 1;
+            let dead = [is_dead(source), is_dead(target)];
             let passage = &mut self.passages[self.graph[edge].0];
-            for (is_dead, node) in dead.into_iter().zip([source, target]) {
-                if is_dead {
-                    passage.points.reverse();
-                    if node == target {
-                        passage.points.reverse();
-                    }
-                    shorten(&mut passage.points, floor, rules);
-                    if let Some(end) = passage.points.last() {
-                        self.graph[node] = *end;
-                    }
-                    if node == source {
-                        passage.points.reverse();
-                    }
-                }
+            if dead[0] && source != self.home {
+                passage.points.reverse();
+                self.graph[source] = shorten(&mut passage.points, floor, rules);
+                passage.points.reverse();
+            }
+            if dead[1] && target != self.home {
+                self.graph[target] = shorten(&mut passage.points, floor, rules);
             }
             passage.points = legs(&passage.points, rules.deviation_max);
             passage.length = passage
@@ -269,18 +267,25 @@ fn wide_enough(skeleton: &Skeleton, clearance_min: f64) -> Web {
     web
 }
 
+/// How many chains end at a place; a ring does so twice.
+fn degree(web: &Web, node: stable_graph::NodeIndex) -> usize {
+    let ends = |edge: stable_graph::EdgeReference<'_, Chain>| {
+        if edge.source() == edge.target() { 2 } else { 1 }
+    };
+    web.edges(node).map(ends).sum()
+}
+
 /// Joins chains at every place where two of them meet and no third. A ring keeps one place.
 fn join(web: &mut Web) {
     let nodes: Vec<_> = web.node_indices().collect();
     for node in nodes {
         let edges: Vec<_> = web.edges(node).map(|edge| edge.id()).collect();
         let [first, second] = edges[..] else { continue };
-        let is_ring = web.edge_endpoints(first).map(|(a, b)| a == b) == Some(true);
-        if is_ring || first == second {
-            continue;
-        }
         let ends = |edge| web.edge_endpoints(edge).unwrap_or((node, node));
         let (before, after) = (ends(first), ends(second));
+        if before.0 == before.1 || after.0 == after.1 {
+            continue;
+        }
         let from = if before.1 == node { before.0 } else { before.1 };
         let to = if after.0 == node { after.1 } else { after.0 };
         let (Some(incoming), Some(outgoing)) = (web.remove_edge(first), web.remove_edge(second))
@@ -322,8 +327,7 @@ fn prune(web: &mut Web, rules: &Rules) {
                     return false;
                 };
                 let chain = &web[*edge];
-                let degree = |node| web.edges(node).count();
-                match (degree(source), degree(target)) {
+                match (degree(web, source), degree(web, target)) {
                     // A way of its own is no spur of anything.
                     (1, 1) => false,
                     (1, _) => is_spur(&chain.clone().reversed(), rules),
@@ -348,6 +352,41 @@ fn prune(web: &mut Web, rules: &Rules) {
         }
     }
     web.retain_nodes(|web, node| web.edges(node).next().is_some());
+}
+
+/// Makes one of two junctions that a chain shorter than `shortest` joins; the others of the second now
+/// lead on over it to the first.
+fn contract(web: &mut Web, shortest: f64) {
+    loop {
+        let short = web.edge_references().find(|edge| {
+            edge.source() != edge.target() && edge.weight().length() < shortest
+        });
+        let Some(short) = short else {
+            break;
+        };
+        let (first, second) = (short.source(), short.target());
+        let Some(link) = web.remove_edge(short.id()) else {
+            break;
+        };
+        let link = link.reversed();
+        // A ring at the second junction has two ends there.
+        while let Some(edge) = web.edges(second).next().map(|edge| edge.id()) {
+            let (source, target) = web.edge_endpoints(edge).unwrap_or_default();
+            let Some(chain) = web.remove_edge(edge) else {
+                break;
+            };
+            let (other, mut chain) = if target == second {
+                (source, chain)
+            } else {
+                (target, chain.reversed())
+            };
+            chain.places.extend_from_slice(&link.places[1..]);
+            chain.openings[1] = link.openings[1];
+            web.add_edge(other, first, chain);
+        }
+        web.remove_node(second);
+    }
+    join(web);
 }
 
 /// Whether a chain that ends at its last place is no way to anywhere.
@@ -456,16 +495,18 @@ fn ahead(floor: &Floor, place: Point, direction: Vector, rules: &Rules) -> f64 {
     least
 }
 
-/// Takes points from the end of a dead end until the wall ahead is far enough, if it ever is.
-fn shorten(points: &mut Vec<Point>, floor: &Floor, rules: &Rules) {
+/// Takes points from the end of a dead end until the wall ahead is far enough, if it ever is; where it
+/// then ends.
+fn shorten(points: &mut Vec<Point>, floor: &Floor, rules: &Rules) -> Point {
     let mut kept = points.len();
     while let [.., before, end] = points[..kept] {
         if ahead(floor, end, end - before, rules) >= rules.ahead_min {
             points.truncate(kept);
-            return;
+            break;
         }
         kept -= 1;
     }
+    points.last().copied().unwrap_or_default()
 }
 
 /// The fewest points of a way, its ends among them, whose legs pass all others within `deviation`

@@ -1,0 +1,312 @@
+//! A coverage driven by S4, under the shield, in simulation.
+//!
+//! The law of the chapter `edge` gets the legs of the whole route. Where it reports one as blocked,
+//! the robot goes back to where it entered the passage, and from there along a new route. The laser
+//! is a simulated LMS200: its scans come as telegrams, and go through the codec.
+
+use super::floor::Floor;
+use super::progress::{Progress, Report};
+use super::roadmap::{PassageId, Roadmap};
+use crate::config::RobotConfig;
+use crate::demo::{Summary, run_watched};
+use crate::edge::{Driver, in_world, robot_for, route};
+use crate::laser::LaserScan;
+use sidestep::edge::{Edge, EdgeConfig, Event, PlannedEdge};
+use sidestep::lms200::{MAX_TELEGRAM, MeasuringMode, Receiver, Scan, Status, Unit, Variant};
+use sidestep::ring::Placement;
+use sidestep_sim::geometry::{Point, Pose};
+use sidestep_sim::laser::{self, Laser};
+use sidestep_sim::scenario::Scenario;
+use sidestep_sim::simulation::Simulation;
+use sidestep_sim::sonar::Faults;
+use sidestep_sim::world::World;
+use std::error::Error;
+
+/// A place nearer than this is where the robot is, m.
+const THERE: f64 = 0.05;
+/// How often the way back from a blocked passage is tried before the robot is given up as stuck.
+const WAYS_BACK: u32 = 3;
+/// The LMS200 in its usual mode sees as far as this, mm.
+const REACH: u32 = 8000;
+
+/// What is to be covered, by what robot.
+pub struct Job<'a> {
+    /// The floor, with what its map does not have.
+    pub floor: &'a Floor,
+    /// Its roadmap.
+    pub roadmap: &'a Roadmap,
+    /// The robot's configuration.
+    pub config: RobotConfig,
+    /// S4's parameters.
+    pub edge: sidestep::edge::Parameters,
+    /// Seed of all noise.
+    pub seed: u64,
+    /// Faults of every sonar.
+    pub sonar_faults: Faults,
+    /// When to give up, ms.
+    pub time_limit_ms: u64,
+}
+
+/// Something that happened on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Happening {
+    /// A passage was driven to its end.
+    Covered(PassageId),
+    /// Something is on the edge, here (m).
+    Detected(Point),
+    /// There is room to pass it.
+    Passable,
+    /// A passage is blocked, by something here (m).
+    Blocked(PassageId, Point),
+    /// The robot cannot even get back to where it came from.
+    Stuck,
+}
+
+/// What came of it.
+pub struct Run {
+    /// Who was covered, who blocked.
+    pub report: Report,
+    /// How the run went otherwise.
+    pub summary: Summary,
+    /// The simulation at its end.
+    pub simulation: Simulation,
+    /// What happened, and when (ms).
+    pub happenings: Vec<(u64, Happening)>,
+    /// Every scan that was asked for.
+    pub scans: Vec<LaserScan>,
+    /// The robot came to the end of its last route.
+    pub is_home: bool,
+}
+
+/// The walls of a floor and the boxes that its map does not have.
+///
+/// # Errors
+/// If the world refuses one of them.
+pub fn world(floor: &Floor) -> Result<World, sidestep_sim::Error> {
+    let mut world = World::new();
+    for wall in &floor.walls {
+        world.add_wall(wall.from_point(), wall.to_point())?;
+    }
+    for surprise in &floor.surprises {
+        world.add_box(surprise.pose, surprise.length, surprise.width)?;
+    }
+    Ok(world)
+}
+
+/// The legs of a route, and which of them ends a passage.
+struct Legs {
+    edges: Vec<PlannedEdge>,
+    /// Of each leg: it is part of a step of the plan, and that step's last.
+    ends: Vec<Option<bool>>,
+}
+
+/// The legs of what is planned, for a robot at `from` that first goes by `back` to where the plan
+/// begins. None if there is nothing to drive.
+fn legs(
+    floor: &Floor,
+    progress: &Progress<'_>,
+    roadmap: &Roadmap,
+    from: Point,
+    back: &[Point],
+) -> Result<Option<Legs>, Box<dyn Error>> {
+    let mut edges = Vec::new();
+    let mut ends = Vec::new();
+    let mut at = from;
+    for corner in back {
+        if (corner - at).norm() > THERE {
+            edges.extend(route(&floor.start, &[at, *corner])?);
+            ends.push(None);
+            at = *corner;
+        }
+    }
+    for step in progress.plan() {
+        let course = roadmap.passage(step.passage).course(step.reversed);
+        let pieces = route(&floor.start, &course)?;
+        let count = pieces.len();
+        ends.extend((1..=count).map(|i| Some(i == count)));
+        edges.extend(pieces);
+    }
+    Ok((!edges.is_empty()).then_some(Legs { edges, ends }))
+}
+
+/// A simulated LMS200 on the robot.
+struct Scanner {
+    laser: Laser,
+    receiver: Receiver,
+}
+
+impl Scanner {
+    /// What the scanner sees, over its line and through the codec.
+    fn scan(&mut self, world: &World, robot: &Pose, t: u64) -> Result<LaserScan, Box<dyn Error>> {
+        let ranges = self.laser.scan(world, robot);
+        let word = |index: u16| match ranges.get(usize::from(index)) {
+            // All that cannot be written in 13 bits is "farther than the largest range".
+            Some(range) if range.is_finite() && *range < 8.18 => (range * 1000.0).round() as u16,
+            _ => 0x1FF7,
+        };
+        let mut buffer = [0; MAX_TELEGRAM];
+        let telegram = Scan::encode(
+            &mut buffer,
+            0,
+            Variant::Degrees180StepHalf,
+            Unit::Millimetre,
+            Status(0x10),
+            word,
+        )?;
+        let mut bytes = telegram.as_bytes();
+        let telegram = self
+            .receiver
+            .next_frame(&mut bytes)
+            .ok_or("the scanner's telegram got lost")?;
+        let scan = Scan::new_checked(telegram, MeasuringMode::default())?;
+        Ok(LaserScan::of_lms200(&scan, t, REACH))
+    }
+
+    /// Where it sits on the robot.
+    fn placement(&self) -> Placement {
+        let at = self.laser.parameters().placement;
+        Placement {
+            x: at.position.x as f32,
+            y: at.position.y as f32,
+            heading: at.heading as f32,
+        }
+    }
+}
+
+/// Drives a coverage in virtual time; `tell` hears of everything as it happens, with the time in ms.
+///
+/// # Errors
+/// If something in the job is out of range.
+pub fn run(
+    job: &Job<'_>,
+    mut tell: impl FnMut(u64, &Happening),
+) -> Result<Run, Box<dyn Error>> {
+    let (floor, roadmap) = (job.floor, job.roadmap);
+    let scenario = Scenario {
+        name: "coverage",
+        description: floor.name.clone(),
+        world: world(floor)?,
+        start: floor.start,
+        goal: roadmap.graph[roadmap.home],
+        time_limit_ms: job.time_limit_ms,
+        robot: robot_for(&job.config),
+        sonar_faults: job.sonar_faults,
+        seed: job.seed,
+    };
+    let mut progress = Progress::new(roadmap);
+    let home = [roadmap.graph[roadmap.home]];
+    let mut legs_now = legs(floor, &progress, roadmap, floor.start.position, &home)?
+        .ok_or("there is nothing to drive")?;
+    let law: Driver = Edge::new(
+        job.config.core,
+        EdgeConfig::new(job.edge)?,
+        crate::base::ring(&job.config)?,
+        legs_now.edges.clone(),
+    )?;
+    let parameters = laser::Parameters::default();
+    let mut scanner = Scanner {
+        laser: Laser::new(parameters, job.seed)?,
+        receiver: Receiver::new(),
+    };
+    let mut happenings = Vec::new();
+    let mut scans = Vec::new();
+    let mut point = floor.start.position;
+    let mut ways_back = 0;
+    let mut failure: Option<Box<dyn Error>> = None;
+    let (summary, simulation) = run_watched(scenario_of(&scenario), &job.config, law, |pilot, simulation, now| {
+        let mut happens = |happening: Happening| {
+            tell(now, &happening);
+            happenings.push((now, happening));
+        };
+        let pose = simulation.robot().base().pose();
+        if pilot.law_mut().wants_scan() {
+            match look(pilot.law_mut(), &mut scanner, simulation.world(), &pose, now) {
+                Ok(scan) => scans.push(scan),
+                Err(error) => {
+                    failure = Some(error);
+                    return true;
+                }
+            }
+        }
+        while let Some(event) = pilot.law_mut().next_event() {
+            match event {
+                Event::Covered(leg) => {
+                    if let Some(Some(true)) = legs_now.ends.get(leg) {
+                        if let Some(step) = progress.next() {
+                            happens(Happening::Covered(step.passage));
+                        }
+                        progress.done();
+                        ways_back = 0;
+                    }
+                }
+                Event::Detected(_, at) | Event::HeldUp(_, at) => {
+                    point = in_world(&floor.start, at);
+                    happens(Happening::Detected(point));
+                }
+                Event::Measured(_, free) => {
+                    if free.passable {
+                        happens(Happening::Passable);
+                    }
+                }
+                Event::Blocked(leg) => {
+                    let Some(ahead) = pilot.law_mut().route().get(leg).copied() else {
+                        continue;
+                    };
+                    let begun = in_world(&floor.start, ahead.start());
+                    let mut back = vec![begun];
+                    if let (Some(Some(_)), Some(step)) = (legs_now.ends.get(leg), progress.next()) {
+                        happens(Happening::Blocked(step.passage, point));
+                        // Back by the corners that have been passed.
+                        let course = roadmap.passage(step.passage).course(step.reversed);
+                        let passed = course
+                            .iter()
+                            .position(|corner| (corner - begun).norm() < THERE)
+                            .unwrap_or_default();
+                        back = course[..=passed].to_vec();
+                        back.reverse();
+                        progress.blocked();
+                        ways_back = 0;
+                    } else {
+                        // What is left of the way back.
+                        let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
+                        back = rest
+                            .take_while(|(_, end)| end.is_none())
+                            .map(|(edge, _)| in_world(&floor.start, edge.end()))
+                            .collect();
+                        ways_back += 1;
+                    }
+                    let next = legs(floor, &progress, roadmap, believed(pilot, floor), &back);
+                    let next = match next {
+                        Ok(Some(next)) if ways_back < WAYS_BACK => next,
+                        Ok(Some(_)) => {
+                            happens(Happening::Stuck);
+                            return true;
+                        }
+                        Ok(None) => return true,
+                        Err(error) => {
+                            failure = Some(error);
+                            return true;
+                        }
+                    };
+                    if let Err(error) = pilot.law_mut().reroute(next.edges.clone()) {
+                        failure = Some(error.into());
+                        return true;
+                    }
+                    legs_now = next;
+                }
+            }
+        }
+        false
+    })?;
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    Ok(Run {
+        report: progress.report(),
+        is_home: progress.next().is_none(),
+        summary,
+        simulation,
+        happenings,
+        scans,
+    })
+}
