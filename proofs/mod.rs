@@ -17,6 +17,7 @@ use crate::kani;
 
 pub mod arcos;
 pub mod avoid;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
 pub mod lms200;

@@ -122,7 +122,7 @@ fn any_point() -> Vector2<f32> {
 }
 
 /// Any judged reading.
-fn any_reading() -> SonarReading {
+pub fn any_reading() -> SonarReading {
     match kani::any::<u8>() % 5 {
         0 => SonarReading::Echo(any_length()),
         1 => SonarReading::NoEcho(any_length()),

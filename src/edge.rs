@@ -594,23 +594,27 @@ impl<'a> Sight<'a> {
     }
 
     /// What beam `i` blocks of the way between `from` and `to` along the edge: a stretch across it.
-    fn blocks(&self, i: usize, from: f32, to: f32) -> Option<[f32; 2]> {
+    /// The faces of the obstacle itself, `own`, hide what is behind them, which is found out on the
+    /// way past; what anything else hides is not free.
+    fn blocks(&self, i: usize, from: f32, to: f32, own: Option<Extent>) -> Option<[f32; 2]> {
         let inside = |place: Vector2<f32>| place.x >= from && place.x <= to;
         match self.beam(i) {
             Beam::Nothing => None,
-            Beam::Unusable => {
-                // All that the beam crosses.
-                let direction = self.direction(i);
-                let ahead = if direction.x > 0.0 { to } else { from } - self.origin.x;
-                let mut run = 2.0 * ACROSS / direction.y.abs().max(1e-3);
-                if direction.x.abs() > 1e-3 {
-                    run = run.min((ahead / direction.x).max(0.0));
-                }
-                let end = self.origin.y + run * direction.y;
-                Some([self.origin.y.min(end), self.origin.y.max(end)])
-            }
+            Beam::Unusable => self.crossed(i, self.origin, from, to),
             Beam::Hit(place, range) => {
-                let mut blocked = inside(place).then_some([place.y; 2]);
+                let face = own.is_some_and(|own| {
+                    place.x >= own.along[0] - 0.5 * JOIN
+                        && place.x <= own.along[1]
+                        && place.y >= own.across[0] - ROUNDING
+                        && place.y <= own.across[1] + ROUNDING
+                });
+                let mut blocked = if !inside(place) {
+                    None
+                } else if face {
+                    Some([place.y; 2])
+                } else {
+                    self.crossed(i, place, from, to)
+                };
                 // Where a surface ends, it may go on up to the beam that passes it.
                 for j in [i.wrapping_sub(1), i + 1] {
                     if j >= self.beams() {
@@ -629,6 +633,18 @@ impl<'a> Sight<'a> {
                 blocked
             }
         }
+    }
+
+    /// The stretch across the way that a beam runs over from a place on it, until it leaves the way.
+    fn crossed(&self, i: usize, place: Vector2<f32>, from: f32, to: f32) -> Option<[f32; 2]> {
+        let direction = self.direction(i);
+        let ahead = if direction.x > 0.0 { to } else { from } - place.x;
+        let mut run = 2.0 * ACROSS / direction.y.abs().max(1e-3);
+        if direction.x.abs() > 1e-3 {
+            run = run.min((ahead / direction.x).max(0.0));
+        }
+        let end = place.y + run * direction.y;
+        Some([place.y.min(end), place.y.max(end)])
     }
 
     /// How far across the scan looks at `front` along the edge.
@@ -665,10 +681,11 @@ impl<'a> Sight<'a> {
 /// valued point (odometry frame, m) and a scan taken there.
 ///
 /// The obstacle is the surface that the laser sees at the point. The way past it reaches from the
-/// robot to half a safe path beyond the obstacle. Every hit in there blocks what lies behind it along
-/// the edge; so does what the scan does not show: a beam that is not usable, whatever is outside
-/// the scanner's field of view, and the rest of the angle up to the beam that first passes a surface.
-/// The gap is the widest stretch that nothing blocks, within 1.5 m of the edge.
+/// robot to half a safe path beyond the obstacle. Every hit in there blocks its place across the
+/// way, and so does what the scan does not show: what is hidden behind anything but the obstacle,
+/// a beam that is not usable, what is outside the scanner's field of view, and the rest of the angle up
+/// to the beam that first passes a surface. What the obstacle itself hides is found out on the way
+/// past it. The gap is the widest stretch that nothing blocks, within 1.5 m of the edge.
 #[must_use]
 pub fn free_way(
     scan: &Scan<'_>,
@@ -699,7 +716,7 @@ pub fn free_way(
         let mut grown = false;
         for i in 0..=sight.beams() {
             let blocked = if i < sight.beams() {
-                sight.blocks(i, from, to)
+                sight.blocks(i, from, to, obstacle)
             } else {
                 heard
             };

@@ -267,8 +267,22 @@ pub fn run_in_memory<L: sidestep::law::Law<16>>(
     config: &RobotConfig,
     law: L,
 ) -> Result<(Summary, Simulation), Box<dyn Error>> {
+    run_watched(scenario, config, law, |_, _, _| false)
+}
+
+/// The same with a robot of `N` sonars and somebody who looks on, after every step: with the pilot,
+/// the simulation, and the time in ms. The run ends when they say so.
+///
+/// # Errors
+/// If the scenario does not make a simulation, or its goal is out of range.
+pub fn run_watched<L: sidestep::law::Law<N>, const N: usize>(
+    scenario: &Scenario,
+    config: &RobotConfig,
+    law: L,
+    mut watch: impl FnMut(&mut Pilot<L, N>, &Simulation, u64) -> bool,
+) -> Result<(Summary, Simulation), Box<dyn Error>> {
     let mut simulation = scenario.simulate()?;
-    let mut pilot = Pilot::<L, 16>::with_law(
+    let mut pilot = Pilot::<L, N>::with_law(
         law,
         *config,
         goal_from_start(scenario),
@@ -290,6 +304,9 @@ pub fn run_in_memory<L: sidestep::law::Law<16>>(
             }
         }
         while pilot.next_event().is_some() {}
+        if watch(&mut pilot, &simulation, now) {
+            break;
+        }
         if pilot.tally().arrived.is_some() {
             ending = Ending::Arrived;
             break;

@@ -11,6 +11,7 @@ pub mod coverage;
 pub mod demo;
 pub mod draw;
 pub mod drive;
+pub mod edge;
 pub mod emulate;
 pub mod episodes;
 pub mod faults;

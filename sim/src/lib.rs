@@ -5,6 +5,7 @@
 //!   recorded people and cluttered worlds.
 //! - [`sonar`], [`compass`], [`base`]: what the robot senses with, wrongly where asked to, and what
 //!   it drives with.
+//! - [`laser`]: a scanner beside them, not on the serial line.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
 //!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
 //! - [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
@@ -35,6 +36,7 @@ pub mod episode;
 mod error;
 pub mod eth;
 pub mod geometry;
+pub mod laser;
 pub mod link;
 pub mod person;
 pub mod robot;

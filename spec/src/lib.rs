@@ -15,6 +15,7 @@
 pub mod arcos;
 pub mod avoid;
 pub mod coverage;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
 pub mod lms200;

@@ -11,6 +11,7 @@ use crate::config::RobotConfig;
 use crate::demo::{Summary, run_watched};
 use crate::edge::{Driver, in_world, robot_for, route};
 use crate::laser::LaserScan;
+use crate::pilot::Pilot;
 use sidestep::edge::{Edge, EdgeConfig, Event, PlannedEdge};
 use sidestep::lms200::{MAX_TELEGRAM, MeasuringMode, Receiver, Scan, Status, Unit, Variant};
 use sidestep::ring::Placement;
@@ -173,6 +174,28 @@ impl Scanner {
     }
 }
 
+/// Gives a scan to a law that wants one.
+fn look(
+    law: &mut Driver,
+    scanner: &mut Scanner,
+    world: &World,
+    robot: &Pose,
+    now: u64,
+) -> Result<LaserScan, Box<dyn Error>> {
+    let scan = scanner.scan(world, robot, now)?;
+    let metres = scan.metres();
+    law.take_scan(&scan.view(scanner.placement(), &metres)?);
+    Ok(scan)
+}
+
+/// Where the robot believes to be (m); where it started, as long as it does not know.
+fn believed(pilot: &Pilot<Driver, 8>, floor: &Floor) -> Point {
+    let view = pilot.latest().and_then(|decision| decision.view);
+    view.map_or(floor.start.position, |view| {
+        in_world(&floor.start, view.pose.position)
+    })
+}
+
 /// Drives a coverage in virtual time; `tell` hears of everything as it happens, with the time in ms.
 ///
 /// # Errors
@@ -213,7 +236,7 @@ pub fn run(
     let mut point = floor.start.position;
     let mut ways_back = 0;
     let mut failure: Option<Box<dyn Error>> = None;
-    let (summary, simulation) = run_watched(scenario_of(&scenario), &job.config, law, |pilot, simulation, now| {
+    let (summary, simulation) = run_watched(&scenario, &job.config, law, |pilot, simulation, now| {
         let mut happens = |happening: Happening| {
             tell(now, &happening);
             happenings.push((now, happening));

@@ -10,9 +10,13 @@
 //! - [`roadmap`]: of that, what a robot can drive: passages between junctions, with names.
 //! - [`route`]: a shortest closed walk over all passages, and over what is left of them.
 //! - [`progress`]: what has been driven, what turned out to be blocked, and what is next.
+//! - [`drive`]: S4 on that route, in simulation; [`draw`] and [`demo`]: to look at.
 //!
 //! The chapter `coverage` of the law book says what each must keep.
 
+pub mod demo;
+pub mod draw;
+pub mod drive;
 pub mod floor;
 pub mod progress;
 pub mod roadmap;
