@@ -95,7 +95,8 @@ fn every_must_has_its_predicate_test_and_proof() {
         musts.len()
     );
     let predicates = cited("spec/src", "///");
-    let tests = cited("tests", "//=");
+    let mut tests = cited("tests", "//=");
+    tests.extend(cited("hw/tests", "//="));
     let proofs = cited("proofs", "//=");
     let mut missing = Vec::new();
     for (id, text) in &musts {

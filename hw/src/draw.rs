@@ -43,7 +43,7 @@ const PERSON: &str = "#2b8a3e";
 const STOP: &str = "#d6336c";
 const WALL: &str = "#495057";
 
-fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
+pub(crate) fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
     Text::new(content)
         .set("x", round(x))
         .set("y", round(y))
@@ -51,7 +51,7 @@ fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
         .set("font-family", "sans-serif")
 }
 
-fn round(x: f64) -> f64 {
+pub(crate) fn round(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
 }
 
@@ -167,7 +167,7 @@ pub fn draw(picture: &Picture) -> String {
     document.add(scene).add(list).to_string()
 }
 
-fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
+pub(crate) fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
     let stroke = |x1: f64, y1: f64, x2: f64, y2: f64| {
         Line::new()
             .set("x1", x + x1)

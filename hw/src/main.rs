@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
+use sidestep_hw::coverage;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::emulate::{Line, Link, serve};
@@ -40,12 +41,13 @@ enum Command {
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
-    /// people; needs --data).
+    /// people; needs --data), coverage (every edge of a floor, some of them blocked, by S4 with a
+    /// laser; in virtual time; --data FILE for a floor of your own).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
         scenario: String,
-        /// The ETH recording obsmat.txt, for the scenario hotel.
+        /// The ETH recording obsmat.txt, for the scenario hotel; a floor (TOML), for coverage.
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
         /// Where in the recording to start, seconds.
@@ -261,6 +263,17 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
     let mut contacts = 0;
+    if options.scenario == coverage::demo::NAME {
+        let (folder, run) = coverage::demo::run(options, &mut status)?;
+        let picture = folder.join("picture.svg");
+        status.keep(&format!("picture: {}\n", picture.display()));
+        return match run.summary.contacts_while_moving() {
+            0 => Ok(ExitCode::SUCCESS),
+            contacts => {
+                Err(format!("the robot touched something {contacts} times while it moved").into())
+            }
+        };
+    }
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();

@@ -5,8 +5,9 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use rustworkx_core::petgraph::graph::{EdgeIndex, NodeIndex, UnGraph};
 use sidestep_hw::coverage::{
-    Floor, Passage, PassageId, Progress, Roadmap, Rules, Step, roadmap, route, voronoi,
+    Floor, Passage, PassageId, Progress, Roadmap, Rules, Step, drive, roadmap, route, voronoi,
 };
+use sidestep_hw::edge::corridor_base;
 use sidestep_sim::geometry::{Point, Vector, direction, heading_of};
 use sidestep_spec::coverage as law;
 use std::collections::BTreeSet;
@@ -389,4 +390,53 @@ fn steps_of_an_image_are_no_passages() {
     // The corridor, cut where the robot starts.
     assert_eq!(roadmap.passages.len(), 2, "{:#?}", roadmap.passages);
     assert!((6.0..7.5).contains(&roadmap.length()), "{}", roadmap.length());
+}
+
+/// Twenty edges, five boxes that the map does not have: two that can be passed, three that cannot.
+#[test]
+fn twenty_edges_and_five_boxes() {
+    let floor = Floor::parse(CORRIDORS, None).expect("a floor");
+    assert_eq!(floor.surprises.len(), 5);
+    let roadmap = Roadmap::new(&floor, &Rules::default()).expect("a roadmap");
+    let job = drive::Job {
+        floor: &floor,
+        roadmap: &roadmap,
+        config: corridor_base().expect("a configuration"),
+        edge: sidestep::edge::PAPER,
+        seed: 1,
+        sonar_faults: sidestep_sim::sonar::Faults::default(),
+        time_limit_ms: 3_600_000,
+    };
+    let run = drive::run(&job, |t, happening| {
+        println!("{:.1} s: {happening:?}", t as f64 / 1000.0);
+    })
+    .expect("a run");
+    println!("{}", run.report);
+    // The passages that a box leaves less than 600 mm of.
+    let truly_blocked: BTreeSet<PassageId> = roadmap
+        .passages
+        .iter()
+        .enumerate()
+        .filter(|(_, passage)| {
+            floor.surprises.iter().any(|surprise| {
+                let near = |pair: &[Point]| {
+                    (0..=200).any(|i| {
+                        let place = pair[0] + (pair[1] - pair[0]) * (f64::from(i) / 200.0);
+                        (surprise.pose.position - place).norm() < 0.25
+                    })
+                };
+                surprise.length.max(surprise.width) > 0.6 && passage.points.windows(2).any(near)
+            })
+        })
+        .map(|(i, _)| PassageId(i))
+        .collect();
+    assert_eq!(truly_blocked.len(), 3);
+    let report = &run.report;
+    assert_eq!(report.blocked.keys().copied().collect::<BTreeSet<_>>(), truly_blocked);
+    assert_eq!(report.covered.len(), 17);
+    assert_eq!(report.unreachable, BTreeSet::new());
+    assert!(run.is_home);
+    let outcome = run.simulation.outcome();
+    assert_eq!(run.summary.contacts_while_moving(), 0, "{outcome:?}");
+    assert!(!run.scans.is_empty());
 }

@@ -272,12 +272,13 @@ pub fn run(
                     }
                 }
                 Event::Blocked(leg) => {
+                    // A leg of the route, which the law cannot have left.
                     let Some(ahead) = pilot.law_mut().route().get(leg).copied() else {
                         continue;
                     };
                     let begun = in_world(&floor.start, ahead.start());
-                    let mut back = vec![begun];
-                    if let (Some(Some(_)), Some(step)) = (legs_now.ends.get(leg), progress.next()) {
+                    let step = progress.next().filter(|_| legs_now.ends.get(leg).is_some_and(Option::is_some));
+                    let back: Vec<Point> = if let Some(step) = step {
                         happens(Happening::Blocked(step.passage, point));
                         // Back by the corners that have been passed.
                         let course = roadmap.passage(step.passage).course(step.reversed);
@@ -285,19 +286,17 @@ pub fn run(
                             .iter()
                             .position(|corner| (corner - begun).norm() < THERE)
                             .unwrap_or_default();
-                        back = course[..=passed].to_vec();
-                        back.reverse();
                         progress.blocked();
                         ways_back = 0;
+                        course[..=passed].iter().rev().copied().collect()
                     } else {
                         // What is left of the way back.
-                        let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
-                        back = rest
-                            .take_while(|(_, end)| end.is_none())
-                            .map(|(edge, _)| in_world(&floor.start, edge.end()))
-                            .collect();
                         ways_back += 1;
-                    }
+                        let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
+                        rest.take_while(|(_, end)| end.is_none())
+                            .map(|(edge, _)| in_world(&floor.start, edge.end()))
+                            .collect()
+                    };
                     let next = legs(floor, &progress, roadmap, believed(pilot, floor), &back);
                     let next = match next {
                         Ok(Some(next)) if ways_back < WAYS_BACK => next,

@@ -44,6 +44,9 @@ impl Default for Rules {
     }
 }
 
+/// Shortest leg, m.
+const SHORTEST_LEG: f64 = 0.02;
+
 /// Which passage: its place in [`Roadmap::passages`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PassageId(pub usize);
@@ -207,7 +210,7 @@ impl Roadmap {
             if dead[1] && target != self.home {
                 self.graph[target] = shorten(&mut passage.points, floor, rules);
             }
-            passage.points = legs(&passage.points, rules.deviation_max);
+            passage.points = spaced(&legs(&passage.points, rules.deviation_max));
             passage.length = passage
                 .points
                 .windows(2)
@@ -507,6 +510,22 @@ fn shorten(points: &mut Vec<Point>, floor: &Floor, rules: &Rules) -> Point {
         kept -= 1;
     }
     points.last().copied().unwrap_or_default()
+}
+
+/// The same way without corners that are hardly apart from the one before or from the last.
+fn spaced(points: &[Point]) -> Vec<Point> {
+    let [first, corners @ .., last] = points else {
+        return points.to_vec();
+    };
+    let apart = |a: &Point, b: &Point| (a - b).norm() >= SHORTEST_LEG;
+    let mut kept = vec![*first];
+    for corner in corners {
+        if kept.last().is_some_and(|before| apart(before, corner)) && apart(corner, last) {
+            kept.push(*corner);
+        }
+    }
+    kept.push(*last);
+    kept
 }
 
 /// The fewest points of a way, its ends among them, whose legs pass all others within `deviation`
