@@ -35,6 +35,7 @@ pub mod ring;
 pub mod shield;
 pub mod track;
 pub mod view;
+pub mod wall;
 
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]
