@@ -225,6 +225,7 @@ fn look(measured: Option<i32>, at: u64, odometer: Odometer, covered: bool) -> Lo
         odometer,
         pose: None,
         covered,
+        on_wall: kani::any(),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::Sighting;
-use crate::quantity::{Angle, Length, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Instant, Length, OutOfRange, Speed, in_range};
 use crate::track::Obstacle;
 use crate::view::View;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -217,6 +217,15 @@ pub enum Side {
 }
 
 impl Side {
+    /// The other side.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
     /// The side away from an obstacle at `bearing` from the reference heading. Straight ahead
     /// (or unknown) it is the side with more measured clearance, and left on a tie.
     #[must_use]
@@ -392,7 +401,13 @@ pub fn next_mode(mode: Mode, situation: &Situation, config: &Config) -> Mode {
 struct Latch {
     reference: Angle,
     side: Side,
+    /// Stopped, it looks at its goal for a change.
+    facing_goal: bool,
 }
+
+/// How long a stopped robot looks one way, in ms, before it looks another: E5's heading, the goal,
+/// E5's heading on the other side, and so on.
+const LOOK_TIME: u64 = 2500;
 
 /// An obstacle that comes nearer no faster than this, in m/s, stands still: sonar noise over the
 /// time of a trend looks like this much.
@@ -409,6 +424,8 @@ pub struct Avoid {
     latch: Option<Latch>,
     /// Ticks in a row in which the obstacle receded.
     receding: u32,
+    /// Since when a stopped robot has looked where it looks.
+    looking_since: Option<Instant>,
 }
 
 impl Avoid {
@@ -420,6 +437,7 @@ impl Avoid {
             mode: Mode::Cruise,
             latch: None,
             receding: 0,
+            looking_since: None,
         }
     }
 
@@ -440,21 +458,25 @@ impl Avoid {
             aligned: heading_error.get().abs() <= self.config.alignment,
             at_goal: view.goal.distance <= self.config.goal_tolerance,
         };
-        if let Some(obstacle) = &view.obstacle {
+        if let Some(obstacle) = self.in_the_way(view) {
             situation.corridor_free = !self.in_corridor(obstacle, view, view.goal.heading);
-            // What is seen to stand still beside the way to the goal is no obstacle to it.
-            let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
-            if !situation.corridor_free || moving || !obstacle.visible {
-                situation.distance = Some(obstacle.distance);
-                // Receding that is not confirmed yet is neither closing nor gone.
-                let confirmed = self.receding >= self.config.confirm_samples as u32;
-                situation.trend = match obstacle.trend {
-                    Trend::Receding if !confirmed => Trend::Steady,
-                    trend => trend,
-                };
-            }
+            situation.distance = Some(obstacle.distance);
+            // Receding that is not confirmed yet is neither closing nor gone.
+            let confirmed = self.receding >= self.config.confirm_samples as u32;
+            situation.trend = match obstacle.trend {
+                Trend::Receding if !confirmed => Trend::Steady,
+                trend => trend,
+            };
         }
         situation
+    }
+
+    /// The obstacle, unless it is seen to stand still beside the way to the goal: then it is none.
+    fn in_the_way<'a, const N: usize>(&self, view: &'a View<N>) -> Option<&'a Obstacle> {
+        view.obstacle.as_ref().filter(|obstacle| {
+            let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
+            moving || !obstacle.visible || self.in_corridor(obstacle, view, view.goal.heading)
+        })
     }
 
     /// The obstacle is ahead in direction `heading`, within the corridor the robot would sweep.
@@ -481,7 +503,7 @@ impl Avoid {
 
     /// Holds reference and side of a maneuver from its beginning to its end.
     fn hold_latch<const N: usize>(&mut self, view: &View<N>) {
-        match (self.mode, &view.obstacle) {
+        match (self.mode, self.in_the_way(view)) {
             (Mode::Cruise | Mode::Reorient | Mode::Arrived, _) => self.latch = None,
             // A robot at rest can wait and see what it is that it turns away from.
             (Mode::Stop, Some(obstacle))
@@ -493,9 +515,43 @@ impl Avoid {
                 self.latch = Some(Latch {
                     reference,
                     side: Side::away_from(bearing, left, right),
+                    facing_goal: false,
                 });
             }
             (Mode::Maneuver | Mode::Stop, _) => {}
+        }
+    }
+
+    /// Makes a robot look round that cannot go where it looks.
+    fn look_round<const N: usize>(&mut self, view: &View<N>) {
+        let stuck = match self.mode {
+            Mode::Stop => true,
+            Mode::Maneuver => self.pace(view) == 0.0,
+            _ => false,
+        };
+        let Some(latch) = self.latch.as_mut().filter(|_| stuck) else {
+            self.looking_since = None;
+            return;
+        };
+        let since = *self.looking_since.get_or_insert(view.now);
+        if view.now.since(since).is_some_and(|time| time >= LOOK_TIME) {
+            if latch.facing_goal {
+                latch.side = latch.side.other();
+            }
+            latch.facing_goal = !latch.facing_goal;
+            self.looking_since = Some(view.now);
+        }
+    }
+
+    /// The share of its speed that a maneuver has room for straight ahead: none at d_n, where there
+    /// still is room to turn, all of it at d_safe.
+    fn pace<const N: usize>(&self, view: &View<N>) -> f32 {
+        let (near, safe) = (self.config.near_distance, self.config.safe_distance);
+        if view.ahead.get() >= safe {
+            1.0
+        } else {
+            // Not reached with d_n = d_safe, unless there is nothing left.
+            ((view.ahead.get() - near) / (safe - near).max(f32::MIN_POSITIVE)).max(0.0)
         }
     }
 
@@ -503,12 +559,16 @@ impl Avoid {
     fn target<const N: usize>(&self, view: &View<N>) -> (Angle, f32) {
         let config = &self.config;
         let cruise = config.cruise_speed;
-        let around = match (&view.obstacle, self.latch) {
+        let around = match (self.in_the_way(view), self.latch) {
             (Some(obstacle), Some(latch)) if obstacle.distance.get() < config.safe_distance => {
                 let reach = Length::metres(config.turn_distance).unwrap_or(Length::ZERO);
                 let turn = QuarterTurns::at_distance(obstacle.distance, reach);
                 let speed_max = Speed::metres_per_second(config.speed_max).unwrap_or(Speed::ZERO);
-                let heading = maneuver_heading(latch.reference, latch.side, turn);
+                let heading = if latch.facing_goal {
+                    view.goal.heading
+                } else {
+                    maneuver_heading(latch.reference, latch.side, turn)
+                };
                 Some((heading, maneuver_speed(speed_max, turn).get(), obstacle))
             }
             _ => None,
@@ -519,7 +579,8 @@ impl Avoid {
             // past the obstacle, and only while it sees it (ER-S1-20, ER-X1).
             (Mode::Maneuver, Some((heading, speed, obstacle))) => {
                 let past = obstacle.visible && !self.in_corridor(obstacle, view, view.pose.heading);
-                (heading, if past { speed } else { speed.min(cruise) })
+                let speed = if past { speed } else { speed.min(cruise) };
+                (heading, speed * self.pace(view))
             }
             (Mode::Maneuver, None) => (view.goal.heading, cruise / 2.0),
             (Mode::Reorient, _) => {
@@ -527,7 +588,9 @@ impl Avoid {
                 (view.goal.heading, if seen { cruise } else { cruise / 2.0 })
             }
             (Mode::Stop, Some((heading, _, _))) => (heading, 0.0),
-            (Mode::Stop | Mode::Arrived, _) => (view.pose.heading, 0.0),
+            // With nothing to turn away from, the goal is where to look.
+            (Mode::Stop, None) => (view.goal.heading, 0.0),
+            (Mode::Arrived, _) => (view.pose.heading, 0.0),
         }
     }
 }
@@ -544,6 +607,7 @@ impl<const N: usize> Law<N> for Avoid {
         };
         self.mode = next_mode(self.mode, &self.situation(view), &self.config);
         self.hold_latch(view);
+        self.look_round(view);
         let (heading, speed) = self.target(view);
         let error = heading.minus(view.pose.heading).get();
         let turn_rate_max = self.config.turn_rate_max;

@@ -423,8 +423,8 @@ pub struct Gap {
     pub left: f32,
 }
 
-/// What floats round at the lengths of a corridor, m.
-const ROUNDING: f32 = 1e-6;
+/// What floats round over a scan: the angles of its beams add up to some 10⁻⁶ rad, m.
+const ROUNDING: f32 = 1e-4;
 
 impl Gap {
     /// How wide it is, m.
@@ -615,7 +615,8 @@ impl<'a> Sight<'a> {
                 } else {
                     self.crossed(i, place, from, to)
                 };
-                // Where a surface ends, it may go on up to the beam that passes it.
+                // Where a surface ends, it may go on up to the beam that passes it: round the scanner,
+                // or square across the way.
                 for j in [i.wrapping_sub(1), i + 1] {
                     if j >= self.beams() {
                         continue;
@@ -624,10 +625,22 @@ impl<'a> Sight<'a> {
                         Beam::Hit(_, other) => other > range + JOIN,
                         Beam::Nothing | Beam::Unusable => true,
                     };
-                    let end = self.origin + self.direction(j) * range;
-                    if passes && (inside(end) || inside(place)) {
-                        let [low, high] = blocked.unwrap_or([end.y; 2]);
-                        blocked = Some([low.min(end.y), high.max(end.y)]);
+                    if !passes {
+                        continue;
+                    }
+                    let direction = self.direction(j);
+                    let depth = place.x - self.origin.x;
+                    let square = if direction.x > 0.1 && depth > 0.0 {
+                        depth / direction.x
+                    } else {
+                        range
+                    };
+                    for range in [range, square.min(range + JOIN)] {
+                        let end = self.origin + direction * range;
+                        if inside(end) || inside(place) {
+                            let [low, high] = blocked.unwrap_or([end.y; 2]);
+                            blocked = Some([low.min(end.y), high.max(end.y)]);
+                        }
                     }
                 }
                 blocked
@@ -918,6 +931,12 @@ const CREEP: f32 = 0.03;
 /// A side of the gap is known to this much, m: noise of sonar and odometry.
 const SIDE: f32 = 0.05;
 
+/// The forward part of the axis of a sonar that looks across the way.
+const ACROSS_AXIS: f32 = 0.26;
+
+/// A side of an obstacle and an echo of it are no farther apart than this across the way, m.
+const BESIDE: f32 = 0.1;
+
 /// Slowest standing, m/s and rad/s.
 const STANDING: [f32; 2] = [0.005, 0.02];
 
@@ -928,6 +947,8 @@ struct SubRoute {
     legs: [Option<PlannedEdge>; 2],
     /// The gap, in the frame of the planned edge.
     gap: Gap,
+    /// The side of the gap that is the obstacle's, across the edge, m, and whether it is the left.
+    side: (f32, bool),
 }
 
 /// S4's law: along a route of planned edges for a robot with `N` sonars. A route is whatever lends
@@ -1158,6 +1179,35 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
         view.pose.to_world(at.position + at.axis * range)
     }
 
+    /// How long the obstacle is shows only beside it: the leg past it goes on for half a safe path
+    /// beyond the last place where a sonar heard it across the way.
+    fn go_on_past(&mut self, view: &View<N>, edge: &PlannedEdge) {
+        let half = 0.5 * self.edge.safe_path_width;
+        let Some(way) = &mut self.sub_route else {
+            return;
+        };
+        let [None, Some(leg)] = way.legs else {
+            return;
+        };
+        let (side, left) = way.side;
+        let mut beside = false;
+        for (reading, at) in view.sonar.iter().zip(self.ring.sonars()) {
+            if at.axis.x.abs() < ACROSS_AXIS
+                && (at.axis.y > 0.0) == left
+                && let SonarReading::Echo(range) = *reading
+            {
+                let heard = view.pose.to_world(at.position + at.axis * range.get());
+                beside |= (edge.to_edge(heard).y - side).abs() <= BESIDE;
+            }
+        }
+        let here = edge.to_edge(view.pose.position).x;
+        let end = edge.to_edge(leg.end());
+        if beside && here + half > end.x {
+            let end = edge.to_world(Vector2::new(here + half, end.y));
+            way.legs[1] = PlannedEdge::new(leg.start(), end).ok().or(Some(leg));
+        }
+    }
+
     /// Drops the legs whose ends are reached; whether none is left.
     fn advance_legs(&mut self, pose: &Pose) -> bool {
         let Some(way) = &mut self.sub_route else {
@@ -1238,6 +1288,11 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
         let heard = edge.to_edge(self.point).x;
         let [front, far] = found.obstacle.map_or([heard; 2], |extent| extent.along);
         let lane = gap.middle();
+        let across = found.obstacle.map_or(edge.to_edge(self.point).y, |extent| {
+            0.5 * (extent.across[0] + extent.across[1])
+        });
+        let left = across > lane;
+        let side = (if left { gap.left } else { gap.right }, left);
         let enter = Vector2::new((front - half).max(here.x), lane);
         // Not past the end of the edge, if there is a choice.
         let leave = (far + half).min(edge.length().max(enter.x));
@@ -1251,6 +1306,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
         Some(SubRoute {
             legs: [leg(here, enter), leg(enter, leave)],
             gap,
+            side,
         })
     }
 }
@@ -1373,6 +1429,9 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
             self.looks = 0;
         }
 
+        if self.state == State::SubRoute {
+            self.go_on_past(view, &edge);
+        }
         let past = self.state == State::SubRoute && self.advance_legs(&pose);
         let (line, leg) = self.line(&edge, &pose);
         let actual = ActualEdge::new(&pose, &line);

@@ -37,6 +37,7 @@ pub mod shield;
 pub mod stream;
 pub mod track;
 pub mod view;
+pub mod wall;
 
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]

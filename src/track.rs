@@ -57,6 +57,17 @@ pub(crate) struct Track {
     history: [Option<(Instant, f32)>; HISTORY],
 }
 
+/// What an obstacle is judged by.
+pub(crate) struct Look<'a> {
+    pub(crate) now: Instant,
+    pub(crate) pose: &'a Pose,
+    /// The robot's own speed, m/s.
+    pub(crate) speed: f32,
+    pub(crate) sighting: Option<&'a Sighting>,
+    /// The sonar that saw it last has something still in front of it.
+    pub(crate) still: bool,
+}
+
 /// One echo, placed.
 #[derive(Clone, Copy)]
 struct Echo {
@@ -120,16 +131,19 @@ impl Track {
         None
     }
 
+    /// The sonar that saw it last.
+    pub(crate) const fn sonar(&self) -> usize {
+        self.sonar
+    }
+
     /// What the law is told of the obstacle.
     pub(crate) fn obstacle<const N: usize>(
         &self,
-        now: Instant,
-        pose: &Pose,
-        speed: f32,
-        sighting: Option<&Sighting>,
+        look: &Look<'_>,
         ring: &Ring<N>,
         config: &Config,
     ) -> Obstacle {
+        let Look { now, pose, .. } = *look;
         let offset = self.position - pose.position;
         let direction = Angle::radians(math::atan2(offset.y, offset.x)).unwrap_or(Angle::ZERO);
         let bearing = direction.minus(pose.heading);
@@ -139,14 +153,23 @@ impl Track {
             .since(self.seen)
             .is_some_and(|age| age <= milliseconds(config.sonar_age_max));
         let trend = match rate {
+            _ if visible && look.still => Trend::Steady,
             Some(rate) if visible && rate > TREND_RATE => Trend::Receding,
             Some(rate) if visible && rate < -TREND_RATE => Trend::Closing,
             Some(_) if visible => Trend::Steady,
             _ => Trend::Unknown,
         };
         let speed_max = Speed::metres_per_second(config.obstacle_speed_max).unwrap_or(Speed::MAX);
-        let estimate = seen_by_camera(sighting, now, speed, speed_max, config)
-            .unwrap_or_else(|| closing_speed(rate, speed * math::cos(bearing.get()), speed_max));
+        let own = look.speed * math::cos(bearing.get());
+        let estimate = match seen_by_camera(look, speed_max, config) {
+            Some(estimate) => estimate,
+            // What has agreed with the robot's own motion for so long does not move.
+            None if visible && look.still => ObstacleSpeed {
+                value: Speed::ZERO,
+                saturated: false,
+            },
+            None => closing_speed(rate, own, speed_max),
+        };
         Obstacle {
             distance: self.distance,
             contact_range: ring.sonars()[self.sonar].contact_range,
@@ -161,18 +184,13 @@ impl Track {
 }
 
 /// S1 E3 from a camera, if it saw something within the hold time.
-fn seen_by_camera(
-    sighting: Option<&Sighting>,
-    now: Instant,
-    speed: f32,
-    speed_max: Speed,
-    config: &Config,
-) -> Option<ObstacleSpeed> {
-    let sighting = sighting?;
-    let fresh = now
+fn seen_by_camera(look: &Look<'_>, speed_max: Speed, config: &Config) -> Option<ObstacleSpeed> {
+    let sighting = look.sighting?;
+    let fresh = look
+        .now
         .since(sighting.taken_at)
         .is_some_and(|age| age <= milliseconds(config.hold_time));
-    let robot_speed = Speed::metres_per_second(speed.abs()).ok()?;
+    let robot_speed = Speed::metres_per_second(look.speed.abs()).ok()?;
     // A camera that looks ahead sees across the direction of travel: θ_R is 90° to it.
     let heading = Angle::radians(FRAC_PI_2).ok()?;
     fresh.then(|| obstacle_speed(sighting, robot_speed, heading, speed_max))

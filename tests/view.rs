@@ -128,6 +128,7 @@ impl Hearing {
             odometer: self.odometer,
             pose: None,
             covered,
+            on_wall: false,
         };
         self.memory.update(&look, &self.sonar, &self.config)
     }

@@ -280,10 +280,10 @@ pub fn finding_decides(passable: bool, now_sub_route: bool) -> bool {
     passable == now_sub_route
 }
 
-/// edge.INV-13: what is called passable is as wide as a safe path, to what floats round, and no hit
-/// of the scan lies inside it (metres across the edge).
+/// edge.INV-13: what is called passable is as wide as a safe path, and no hit of the scan lies inside
+/// it (metres across the edge), to a tenth of a millimetre, which is what floats round over a scan.
 #[must_use]
 pub fn gap_is_free(right: f32, left: f32, passable: bool, width: f32, hits: &[f32]) -> bool {
-    (!passable || left - right >= width - 1e-6)
-        && hits.iter().all(|y| *y <= right + 1e-6 || *y >= left - 1e-6)
+    (!passable || left - right >= width - 1.01e-4)
+        && hits.iter().all(|y| *y <= right + 1e-4 || *y >= left - 1e-4)
 }
