@@ -20,7 +20,7 @@ pub mod avoid;
 pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
-pub mod lms200;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;

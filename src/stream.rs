@@ -82,6 +82,10 @@ impl<F: Framing, const LONGEST: usize> Receiver<F, LONGEST> {
 
     /// The next frame. `None` means that `input` is used up: all that was in it has been delivered,
     /// skipped or kept as the beginning of a frame.
+    //= arcos.INV-4
+    //= arcos.INV-5
+    //= laser.INV-4
+    //= laser.INV-5
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<F::Frame<'_>> {
         // Each turn takes bytes from `input` or skips one of those held.
         let length = loop {

@@ -19,7 +19,7 @@ const TARGETS: &[(&str, Target)] = &[
     ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
-    ("lms200", targets::lms200::run),
+    ("laser", targets::laser::run),
     ("shield", targets::shield::run),
 ];
 

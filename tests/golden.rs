@@ -642,7 +642,11 @@ fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
             scale
         };
         // N1 is the difference of two ranges, which f32 keeps to seven digits of the larger.
-        let scale = if *name == "N1" { scale.max(10.0) } else { scale };
+        let scale = if *name == "N1" {
+            scale.max(10.0)
+        } else {
+            scale
+        };
         let tolerance = if core { tol.max(2e-5 * scale) } else { tol };
         if !agrees(name, value, expected, tolerance) {
             wrong.push(format!(

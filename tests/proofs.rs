@@ -133,7 +133,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     edge: projections_are_bounded, blind_is_never_clear, steering_is_bounded,
         machine_stops_and_looks, any_view_is_driven_within_limits;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
-    lms200: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
+    laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;

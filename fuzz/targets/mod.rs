@@ -8,7 +8,7 @@ pub mod arcos;
 pub mod avoid;
 pub mod bytes;
 pub mod controller;
-pub mod lms200;
+pub mod laser;
 pub mod reference;
 pub mod settings;
 pub mod shield;

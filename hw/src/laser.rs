@@ -1,6 +1,6 @@
 //! Laser scans: from the LMS200's telegrams, and as JSON lines.
 //!
-//! One object on each line, as the chapter `lms200` of the law book has it:
+//! One object on each line, as the chapter `laser` of the law book has it:
 //!
 //! ```json
 //! {"t": 1200, "first": -90.0, "step": 0.5, "reach": 8000, "ranges": [605, null, 8000]}
@@ -13,7 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 use sidestep::edge;
-use sidestep::lms200::{self, Missing, Reading};
+use sidestep::laser::{Missing, Reading, Scan};
 use sidestep::quantity::{Instant, OutOfRange};
 use sidestep::ring::Placement;
 use std::fmt;
@@ -45,7 +45,7 @@ impl LaserScan {
     /// Of all that is no range only [`Missing::TooFar`] says something: that nothing is nearer than
     /// the scanner reaches.
     #[must_use]
-    pub fn of_lms200(scan: &lms200::Scan<'_>, t: u64, reach: u32) -> Self {
+    pub fn of_lms200(scan: &Scan<'_>, t: u64, reach: u32) -> Self {
         let variant = scan.variant();
         let readings = (0..scan.count()).filter_map(|index| scan.reading(index));
         Self {
@@ -180,7 +180,7 @@ pub fn write(output: &mut impl Write, scan: &LaserScan) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use sidestep::lms200::{MAX_TELEGRAM, MeasuringMode, Scan, Status, Unit, Variant};
+    use sidestep::laser::{MAX_TELEGRAM, MeasuringMode, Status, Unit, Variant};
 
     #[test]
     fn a_telegram_becomes_a_line_and_a_view() {
@@ -192,8 +192,14 @@ mod tests {
             index => 500 + index,
         };
         let variant = Variant::Degrees180Step1;
-        let telegram =
-            Scan::encode(&mut buffer, 0, variant, Unit::Millimetre, Status(0x10), words);
+        let telegram = Scan::encode(
+            &mut buffer,
+            0,
+            variant,
+            Unit::Millimetre,
+            Status(0x10),
+            words,
+        );
         let scan = Scan::new_checked(telegram.expect("it fits"), MeasuringMode::default());
         let scan = LaserScan::of_lms200(&scan.expect("a scan"), 40, 8000);
         assert_eq!(scan.ranges[..4], [None, Some(8000), Some(8000), Some(503)]);
@@ -224,9 +230,16 @@ mod tests {
             ("605, null", "605", "1 ranges, allowed is 2 to 721"),
             ("8000", "0", "reach is 0 mm, allowed is 500 mm to 100000 mm"),
             ("-90", "999", "first is 999°, allowed is -360° to 360°"),
-            ("\"step\": 1", "\"step\": 0", "step is 0°, allowed is more than 0°"),
+            (
+                "\"step\": 1",
+                "\"step\": 0",
+                "step is 0°, allowed is more than 0°",
+            ),
         ] {
-            assert_eq!(refused(&good.replace(from, to)), format!("line 1: {reason}"));
+            assert_eq!(
+                refused(&good.replace(from, to)),
+                format!("line 1: {reason}")
+            );
         }
         let earlier = good.replace("\"t\": 5", "\"t\": 4");
         assert_eq!(

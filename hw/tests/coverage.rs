@@ -389,7 +389,11 @@ fn steps_of_an_image_are_no_passages() {
     let roadmap = Roadmap::new(&floor, &Rules::default()).expect("a roadmap");
     // The corridor, cut where the robot starts.
     assert_eq!(roadmap.passages.len(), 2, "{:#?}", roadmap.passages);
-    assert!((6.0..7.5).contains(&roadmap.length()), "{}", roadmap.length());
+    assert!(
+        (6.0..7.5).contains(&roadmap.length()),
+        "{}",
+        roadmap.length()
+    );
 }
 
 /// Twenty edges, five boxes that the map does not have: two that can be passed, three that cannot.
@@ -432,7 +436,10 @@ fn twenty_edges_and_five_boxes() {
         .collect();
     assert_eq!(truly_blocked.len(), 3);
     let report = &run.report;
-    assert_eq!(report.blocked.keys().copied().collect::<BTreeSet<_>>(), truly_blocked);
+    assert_eq!(
+        report.blocked.keys().copied().collect::<BTreeSet<_>>(),
+        truly_blocked
+    );
     assert_eq!(report.covered.len(), 17);
     assert_eq!(report.unreachable, BTreeSet::new());
     assert!(run.is_home);

@@ -93,7 +93,11 @@ fn said(happening: &Happening) -> String {
 /// What came of a run, for people.
 fn summary(run: &Run, roadmap: &Roadmap) -> String {
     let outcome = &run.simulation.outcome();
-    let too_near = roadmap.passages.iter().map(|p| p.too_near.len()).sum::<usize>();
+    let too_near = roadmap
+        .passages
+        .iter()
+        .map(|p| p.too_near.len())
+        .sum::<usize>();
     let mut text = format!("{}\n", run.report);
     text += &format!(
         "home again: {}; {:.0} s, {:.1} m by the wheels, {} scans\n",

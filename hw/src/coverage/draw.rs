@@ -101,7 +101,9 @@ pub fn draw(picture: &Picture) -> String {
         let ends = [wall.from_point(), wall.to_point()];
         scene = scene.add(sheet.line(&ends, WALL, 3.0));
     }
-    scene = scene.add(passages(&sheet, picture)).add(route(&sheet, picture));
+    scene = scene
+        .add(passages(&sheet, picture))
+        .add(route(&sheet, picture));
     for surprise in &floor.surprises {
         let corners = [(0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)].map(|(x, y)| {
             let corner = Pose::new(x * surprise.length, y * surprise.width, 0.0);
@@ -117,7 +119,12 @@ pub fn draw(picture: &Picture) -> String {
         );
     }
     if let Some(run) = picture.run {
-        let track: Vec<Point> = run.simulation.trace().iter().map(|s| s.pose.position).collect();
+        let track: Vec<Point> = run
+            .simulation
+            .trace()
+            .iter()
+            .map(|s| s.pose.position)
+            .collect();
         scene = scene.add(sheet.line(&track, TRACK, 1.6).set("stroke-opacity", 0.8));
         for (t, happening) in &run.happenings {
             if let Happening::Blocked(id, place) = happening {
@@ -214,14 +221,21 @@ fn route(sheet: &Sheet, picture: &Picture) -> Group {
                 [pair[0] + right, pair[1] + right]
             })
             .collect();
-        group = group.add(sheet.line(&aside, ROUTE, 1.2).set("stroke-dasharray", "5 3"));
+        group = group.add(
+            sheet
+                .line(&aside, ROUTE, 1.2)
+                .set("stroke-dasharray", "5 3"),
+        );
     }
     group
 }
 
 /// The place half way along a course.
 fn middle(points: &[Point]) -> Point {
-    let length: f64 = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let length: f64 = points
+        .windows(2)
+        .map(|pair| (pair[1] - pair[0]).norm())
+        .sum();
     let mut left = length / 2.0;
     for pair in points.windows(2) {
         let leg = pair[1] - pair[0];

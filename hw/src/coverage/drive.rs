@@ -13,7 +13,7 @@ use crate::edge::{Driver, in_world, robot_for, route};
 use crate::laser::LaserScan;
 use crate::pilot::Pilot;
 use sidestep::edge::{Edge, EdgeConfig, Event, PlannedEdge};
-use sidestep::lms200::{MAX_TELEGRAM, MeasuringMode, Receiver, Scan, Status, Unit, Variant};
+use sidestep::laser::{MAX_TELEGRAM, MeasuringMode, Receiver, Scan, Status, Unit, Variant};
 use sidestep::ring::Placement;
 use sidestep_sim::geometry::{Point, Pose};
 use sidestep_sim::laser::{self, Laser};
@@ -200,10 +200,7 @@ fn believed(pilot: &Pilot<Driver, 8>, floor: &Floor) -> Point {
 ///
 /// # Errors
 /// If something in the job is out of range.
-pub fn run(
-    job: &Job<'_>,
-    mut tell: impl FnMut(u64, &Happening),
-) -> Result<Run, Box<dyn Error>> {
+pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, Box<dyn Error>> {
     let (floor, roadmap) = (job.floor, job.roadmap);
     let scenario = Scenario {
         name: "coverage",
@@ -236,90 +233,99 @@ pub fn run(
     let mut point = floor.start.position;
     let mut ways_back = 0;
     let mut failure: Option<Box<dyn Error>> = None;
-    let (summary, simulation) = run_watched(&scenario, &job.config, law, |pilot, simulation, now| {
-        let mut happens = |happening: Happening| {
-            tell(now, &happening);
-            happenings.push((now, happening));
-        };
-        let pose = simulation.robot().base().pose();
-        if pilot.law_mut().wants_scan() {
-            match look(pilot.law_mut(), &mut scanner, simulation.world(), &pose, now) {
-                Ok(scan) => scans.push(scan),
-                Err(error) => {
-                    failure = Some(error);
-                    return true;
-                }
-            }
-        }
-        while let Some(event) = pilot.law_mut().next_event() {
-            match event {
-                Event::Covered(leg) => {
-                    if let Some(Some(true)) = legs_now.ends.get(leg) {
-                        if let Some(step) = progress.next() {
-                            happens(Happening::Covered(step.passage));
-                        }
-                        progress.done();
-                        ways_back = 0;
-                    }
-                }
-                Event::Detected(_, at) | Event::HeldUp(_, at) => {
-                    point = in_world(&floor.start, at);
-                    happens(Happening::Detected(point));
-                }
-                Event::Measured(_, free) => {
-                    if free.passable {
-                        happens(Happening::Passable);
-                    }
-                }
-                Event::Blocked(leg) => {
-                    // A leg of the route, which the law cannot have left.
-                    let Some(ahead) = pilot.law_mut().route().get(leg).copied() else {
-                        continue;
-                    };
-                    let begun = in_world(&floor.start, ahead.start());
-                    let step = progress.next().filter(|_| legs_now.ends.get(leg).is_some_and(Option::is_some));
-                    let back: Vec<Point> = if let Some(step) = step {
-                        happens(Happening::Blocked(step.passage, point));
-                        // Back by the corners that have been passed.
-                        let course = roadmap.passage(step.passage).course(step.reversed);
-                        let passed = course
-                            .iter()
-                            .position(|corner| (corner - begun).norm() < THERE)
-                            .unwrap_or_default();
-                        progress.blocked();
-                        ways_back = 0;
-                        course[..=passed].iter().rev().copied().collect()
-                    } else {
-                        // What is left of the way back.
-                        ways_back += 1;
-                        let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
-                        rest.take_while(|(_, end)| end.is_none())
-                            .map(|(edge, _)| in_world(&floor.start, edge.end()))
-                            .collect()
-                    };
-                    let next = legs(floor, &progress, roadmap, believed(pilot, floor), &back);
-                    let next = match next {
-                        Ok(Some(next)) if ways_back < WAYS_BACK => next,
-                        Ok(Some(_)) => {
-                            happens(Happening::Stuck);
-                            return true;
-                        }
-                        Ok(None) => return true,
-                        Err(error) => {
-                            failure = Some(error);
-                            return true;
-                        }
-                    };
-                    if let Err(error) = pilot.law_mut().reroute(next.edges.clone()) {
-                        failure = Some(error.into());
+    let (summary, simulation) =
+        run_watched(&scenario, &job.config, law, |pilot, simulation, now| {
+            let mut happens = |happening: Happening| {
+                tell(now, &happening);
+                happenings.push((now, happening));
+            };
+            let pose = simulation.robot().base().pose();
+            if pilot.law_mut().wants_scan() {
+                match look(
+                    pilot.law_mut(),
+                    &mut scanner,
+                    simulation.world(),
+                    &pose,
+                    now,
+                ) {
+                    Ok(scan) => scans.push(scan),
+                    Err(error) => {
+                        failure = Some(error);
                         return true;
                     }
-                    legs_now = next;
                 }
             }
-        }
-        false
-    })?;
+            while let Some(event) = pilot.law_mut().next_event() {
+                match event {
+                    Event::Covered(leg) => {
+                        if let Some(Some(true)) = legs_now.ends.get(leg) {
+                            if let Some(step) = progress.next() {
+                                happens(Happening::Covered(step.passage));
+                            }
+                            progress.done();
+                            ways_back = 0;
+                        }
+                    }
+                    Event::Detected(_, at) | Event::HeldUp(_, at) => {
+                        point = in_world(&floor.start, at);
+                        happens(Happening::Detected(point));
+                    }
+                    Event::Measured(_, free) => {
+                        if free.passable {
+                            happens(Happening::Passable);
+                        }
+                    }
+                    Event::Blocked(leg) => {
+                        // A leg of the route, which the law cannot have left.
+                        let Some(ahead) = pilot.law_mut().route().get(leg).copied() else {
+                            continue;
+                        };
+                        let begun = in_world(&floor.start, ahead.start());
+                        let step = progress
+                            .next()
+                            .filter(|_| legs_now.ends.get(leg).is_some_and(Option::is_some));
+                        let back: Vec<Point> = if let Some(step) = step {
+                            happens(Happening::Blocked(step.passage, point));
+                            // Back by the corners that have been passed.
+                            let course = roadmap.passage(step.passage).course(step.reversed);
+                            let passed = course
+                                .iter()
+                                .position(|corner| (corner - begun).norm() < THERE)
+                                .unwrap_or_default();
+                            progress.blocked();
+                            ways_back = 0;
+                            course[..=passed].iter().rev().copied().collect()
+                        } else {
+                            // What is left of the way back.
+                            ways_back += 1;
+                            let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
+                            rest.take_while(|(_, end)| end.is_none())
+                                .map(|(edge, _)| in_world(&floor.start, edge.end()))
+                                .collect()
+                        };
+                        let next = legs(floor, &progress, roadmap, believed(pilot, floor), &back);
+                        let next = match next {
+                            Ok(Some(next)) if ways_back < WAYS_BACK => next,
+                            Ok(Some(_)) => {
+                                happens(Happening::Stuck);
+                                return true;
+                            }
+                            Ok(None) => return true,
+                            Err(error) => {
+                                failure = Some(error);
+                                return true;
+                            }
+                        };
+                        if let Err(error) = pilot.law_mut().reroute(next.edges.clone()) {
+                            failure = Some(error.into());
+                            return true;
+                        }
+                        legs_now = next;
+                    }
+                }
+            }
+            false
+        })?;
     if let Some(failure) = failure {
         return Err(failure);
     }

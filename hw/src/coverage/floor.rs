@@ -288,29 +288,36 @@ fn outlines(
             && image.get_pixel(x as u32, (height - 1 - y) as u32).0[0] > FREE
     };
     let place = |x: i64, y: i64| -> Millimetres {
-        let whole = |pixels: i64, from: f64| {
-            ((from + pixels as f64 * resolution) * 1000.0).round() as i32
-        };
+        let whole =
+            |pixels: i64, from: f64| ((from + pixels as f64 * resolution) * 1000.0).round() as i32;
         [whole(x, origin[0]), whole(y, origin[1])]
     };
     let mut walls = Vec::new();
     // A border is between two pixels of which one is free; which of them is tells two borders that
     // meet at a corner of two free pixels apart.
     for y in 0..=height {
-        runs(width, |x| (free(x, y - 1), free(x, y)), |from, to| {
-            walls.push(Wall {
-                from: place(from, y),
-                to: place(to, y),
-            });
-        });
+        runs(
+            width,
+            |x| (free(x, y - 1), free(x, y)),
+            |from, to| {
+                walls.push(Wall {
+                    from: place(from, y),
+                    to: place(to, y),
+                });
+            },
+        );
     }
     for x in 0..=width {
-        runs(height, |y| (free(x - 1, y), free(x, y)), |from, to| {
-            walls.push(Wall {
-                from: place(x, from),
-                to: place(x, to),
-            });
-        });
+        runs(
+            height,
+            |y| (free(x - 1, y), free(x, y)),
+            |from, to| {
+                walls.push(Wall {
+                    from: place(x, from),
+                    to: place(x, to),
+                });
+            },
+        );
     }
     Ok(walls)
 }
@@ -469,7 +476,16 @@ mod tests {
     fn an_image_becomes_its_outlines() {
         // Free are two rooms that touch at a corner.
         let mut image = image::GrayImage::new(4, 4);
-        for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1), (2, 2), (3, 2), (2, 3), (3, 3)] {
+        for (x, y) in [
+            (0, 0),
+            (1, 0),
+            (0, 1),
+            (1, 1),
+            (2, 2),
+            (3, 2),
+            (2, 3),
+            (3, 3),
+        ] {
             image.put_pixel(x, y, image::Luma([255]));
         }
         let found = cut(outlines(&image, 0.1, [1.0, 2.0]).expect("walls")).expect("walls");

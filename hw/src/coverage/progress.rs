@@ -117,6 +117,7 @@ impl<'a> Progress<'a> {
     }
 
     /// What has come of it so far.
+    //= coverage.INV-6
     #[must_use]
     pub fn report(&self) -> Report {
         let all = (0..self.roadmap.passages.len()).map(PassageId);

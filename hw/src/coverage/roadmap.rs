@@ -162,7 +162,12 @@ impl Roadmap {
         let order = |a: Point, b: Point| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
         places.sort_by(|a, b| order(web[*a].place, web[*b].place));
         let node = |old: stable_graph::NodeIndex| {
-            NodeIndex::new(places.iter().position(|place| *place == old).unwrap_or_default())
+            NodeIndex::new(
+                places
+                    .iter()
+                    .position(|place| *place == old)
+                    .unwrap_or_default(),
+            )
         };
         for place in &places {
             graph.add_node(web[*place].place);
@@ -193,6 +198,7 @@ impl Roadmap {
     }
 
     /// Draws the passages by legs, keeps dead ends off the walls ahead, and flags the rest.
+    //= coverage.INV-8
     fn finish(&mut self, floor: &Floor, rules: &Rules) {
         for edge in self.graph.edge_indices() {
             let Some((source, target)) = self.graph.edge_endpoints(edge) else {
@@ -361,9 +367,9 @@ fn prune(web: &mut Web, rules: &Rules) {
 /// lead on over it to the first.
 fn contract(web: &mut Web, shortest: f64) {
     loop {
-        let short = web.edge_references().find(|edge| {
-            edge.source() != edge.target() && edge.weight().length() < shortest
-        });
+        let short = web
+            .edge_references()
+            .find(|edge| edge.source() != edge.target() && edge.weight().length() < shortest);
         let Some(short) = short else {
             break;
         };

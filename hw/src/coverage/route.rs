@@ -90,6 +90,10 @@ impl Usable<'_> {
 /// that can be reached and the robot is there already.
 ///
 /// It is never longer than all usable passages twice.
+//= coverage.INV-1
+//= coverage.INV-2
+//= coverage.INV-3
+//= coverage.INV-4
 #[must_use]
 pub fn route(
     roadmap: &Roadmap,
@@ -153,7 +157,10 @@ fn connect(
     let places: Vec<NodeIndex> = places.into_iter().collect();
     // Every two places of different parts, with the way between them.
     let mut between = UnGraph::<NodeIndex, u64>::new_undirected();
-    let nodes: Vec<NodeIndex> = places.iter().map(|place| between.add_node(*place)).collect();
+    let nodes: Vec<NodeIndex> = places
+        .iter()
+        .map(|place| between.add_node(*place))
+        .collect();
     for (i, a) in places.iter().enumerate() {
         for (j, b) in places.iter().enumerate().skip(i + 1) {
             if parts.equiv(a.index(), b.index()) {
@@ -180,6 +187,7 @@ fn connect(
 
 /// The same passages, and shortest ways once more, so that from `from` to `to` there is a walk over
 /// each exactly as often as it is there.
+//= coverage.INV-5
 fn even(
     usable: &Usable<'_>,
     from: NodeIndex,

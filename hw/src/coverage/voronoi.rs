@@ -71,6 +71,7 @@ impl Site {
 ///
 /// # Errors
 /// If the library refuses the walls.
+//= coverage.INV-7
 pub fn skeleton(walls: &[Wall]) -> Result<Skeleton, FloorError> {
     let refused = |reason: &dyn std::fmt::Display| {
         FloorError::from(format!("no Voronoi diagram of these walls: {reason}"))
@@ -86,10 +87,7 @@ pub fn skeleton(walls: &[Wall]) -> Result<Skeleton, FloorError> {
     trace(&diagram, walls).map_err(|reason| refused(&reason))
 }
 
-fn trace(
-    diagram: &Diagram,
-    walls: &[Wall],
-) -> Result<Skeleton, boostvoronoi::BvError> {
+fn trace(diagram: &Diagram, walls: &[Wall]) -> Result<Skeleton, boostvoronoi::BvError> {
     let mut skeleton = Skeleton {
         vertices: diagram
             .vertices()

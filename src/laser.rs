@@ -9,8 +9,8 @@
 //! - [`Scan`]: measured values, each a range or the reason why there is none. A missing range is
 //!   never a large one.
 //!
-//! Facts and their sources are in the chapter `lms200` of the law book, where each invariant named
-//! `lms200.INV-n` is stated. Besides telegrams the scanner sends lone bytes, [`ACKNOWLEDGED`] and
+//! Facts and their sources are in the chapter `laser` of the law book, where each invariant named
+//! `laser.INV-n` is stated. Besides telegrams the scanner sends lone bytes, [`ACKNOWLEDGED`] and
 //! [`NOT_ACKNOWLEDGED`]; a receiver skips them, since the reply that follows says the same and has
 //! a checksum.
 
@@ -105,6 +105,8 @@ impl<'a> Telegram<'a> {
     /// # Errors
     /// [`TelegramError::Truncated`] as long as more bytes could still make `bytes` a telegram, any
     /// other error when none could.
+    //= laser.INV-1
+    //= laser.INV-2
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, TelegramError> {
         let (address, length) = match *bytes {
             [START, address, low, high, ..] => (address, u16::from_le_bytes([low, high])),
@@ -195,7 +197,7 @@ impl Framing for LmsFraming {
 /// Reassembles telegrams from a stream that may begin anywhere and contain anything.
 ///
 /// ```
-/// use sidestep::lms200::{Receiver, Reply};
+/// use sidestep::laser::{Receiver, Reply};
 ///
 /// let mut receiver = Receiver::new();
 /// // An acknowledgement, then the reply to a change of mode.
@@ -272,6 +274,7 @@ impl<'b> TelegramWriter<'b> {
     ///
     /// # Errors
     /// [`TooLong`] if the telegram does not fit.
+    //= laser.INV-3
     pub fn finish(self) -> Result<Telegram<'b>, TooLong> {
         let payload = self.length.saturating_sub(HEADER);
         if payload > MAX_PAYLOAD {
@@ -356,6 +359,7 @@ impl MeasuringMode {
     }
 
     /// What a word of a scan says.
+    //= laser.INV-6
     #[must_use]
     pub const fn reading(self, word: u16, unit: Unit) -> Reading {
         let mask = self.mask();
@@ -464,6 +468,7 @@ impl Variant {
 
     /// Direction of value `index` from straight ahead, in hundredths of a degree, counter-clockwise
     /// positive: the first value is rightmost. None beyond the last.
+    //= laser.INV-7
     #[must_use]
     pub fn bearing(self, index: u16) -> Option<i16> {
         if index >= self.count() {
@@ -649,6 +654,7 @@ impl<'a> Scan<'a> {
     ///
     /// # Errors
     /// [`ReplyError`] says what is wrong.
+    //= laser.INV-8
     pub fn new_checked(telegram: Telegram<'a>, mode: MeasuringMode) -> Result<Self, ReplyError> {
         let (command, data, status) = split_reply(telegram)?;
         if command != VALUES {

@@ -1,16 +1,16 @@
-//! Chapter `lms200`: the codec of the laser scanner's telegrams.
+//! Chapter `laser`: the codec of the laser scanner's telegrams.
 
 mod common;
 
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
-use sidestep::lms200::{
+use sidestep::laser::{
     Baud, FACTORY_PASSWORD, MAX_TELEGRAM, MeasuringMode, Missing, Reading, Receiver, Reply,
     ReplyError, Request, Scan, Severity, Status, Telegram, TelegramError, TelegramWriter, Unit,
     Variant, checksum,
 };
-use sidestep_spec::lms200 as law;
+use sidestep_spec::laser as law;
 
 /// Whole telegrams that SICK's manuals print, as three programs by others carry them: requests with
 /// the payload that each has.
@@ -61,8 +61,8 @@ const PRINTED: &[(Request, &[u8])] = &[
     ),
 ];
 
-//= lms200.INV-1
-//= lms200.INV-3
+//= laser.INV-1
+//= laser.INV-3
 #[test]
 fn requests_are_as_printed() {
     for (request, printed) in PRINTED {
@@ -155,8 +155,8 @@ fn replies_are_told_apart() {
 
 /// A scan of 361 values in mm has the 732 bytes that the manual's example has, and reads as it was
 /// made.
-//= lms200.INV-7
-//= lms200.INV-8
+//= laser.INV-7
+//= laser.INV-8
 #[test]
 fn a_scan_by_hand() {
     let mut buffer = [0; MAX_TELEGRAM];
@@ -200,7 +200,7 @@ fn a_scan_by_hand() {
     assert_eq!(scan.reading(30), Some(Reading::Range(2500 + 0x8000)));
 }
 
-//= lms200.INV-8
+//= laser.INV-8
 #[test]
 fn what_is_no_whole_scan_is_refused() {
     let refused = |header: u16, values: usize, tail: &[u8], status: u8| {
@@ -271,8 +271,8 @@ fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
 proptest! {
     #![proptest_config(common::cases(4_000))]
 
-    //= lms200.INV-1
-    //= lms200.INV-2
+    //= laser.INV-1
+    //= laser.INV-2
     #[test]
     fn any_bytes_are_checked(data in prop_oneof![any_bytes(), any_telegram()]) {
         let result = Telegram::new_checked(&data);
@@ -290,7 +290,7 @@ proptest! {
     }
 
     /// One wrong bit is noticed, wherever it is.
-    //= lms200.INV-1
+    //= laser.INV-1
     #[test]
     fn a_telegram_that_is_damaged_is_refused(
         telegram in any_telegram(), place in any::<Index>(), bit in 0_u8..8, tail in any_bytes()
@@ -309,7 +309,7 @@ proptest! {
         prop_assert!(Telegram::new_checked(&damaged).is_err());
     }
 
-    //= lms200.INV-3
+    //= laser.INV-3
     #[test]
     fn what_is_written_is_accepted(
         address in any::<u8>(), command in any::<u8>(), data in vec(any::<u8>(), 0..830)
@@ -326,9 +326,9 @@ proptest! {
         }
     }
 
-    //= lms200.INV-2
-    //= lms200.INV-4
-    //= lms200.INV-5
+    //= laser.INV-2
+    //= laser.INV-4
+    //= laser.INV-5
     #[test]
     fn nothing_is_lost(
         parts in vec(prop_oneof![any_telegram(), any_bytes()], 0..8),
@@ -364,9 +364,9 @@ proptest! {
         ));
     }
 
-    //= lms200.INV-6
-    //= lms200.INV-7
-    //= lms200.INV-8
+    //= laser.INV-6
+    //= laser.INV-7
+    //= laser.INV-8
     #[test]
     fn scans_come_back(
         variant in select(&Variant::ALL[..]),

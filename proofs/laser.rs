@@ -1,15 +1,15 @@
-//! Chapter `lms200`: the codec of the laser scanner's telegrams.
+//! Chapter `laser`: the codec of the laser scanner's telegrams.
 
 #[cfg(not(kani))]
 use super::kani;
-use sidestep::lms200::{
+use sidestep::laser::{
     MeasuringMode, Reading, Telegram, TelegramError, TelegramWriter, Unit, Variant, checksum,
 };
-use sidestep_spec::lms200 as law;
+use sidestep_spec::laser as law;
 
 /// The checksum is the specification's, for any 12 bytes or fewer. Each further byte repeats the
 /// same step.
-//= lms200.INV-1
+//= laser.INV-1
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(14))]
 #[cfg_attr(kani, kani::solver(minisat))]
@@ -24,8 +24,8 @@ pub fn checksum_is_as_specified() {
 
 /// Bytes are a telegram exactly if the specification says so, and a telegram is a view within them,
 /// for any bytes up to 12. `Truncated` is said only as long as bytes are missing.
-//= lms200.INV-1
-//= lms200.INV-2
+//= laser.INV-1
+//= laser.INV-2
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(14))]
 #[cfg_attr(kani, kani::solver(minisat))]
@@ -84,7 +84,7 @@ fn written_telegram<const N: usize>(buffer: &mut [u8]) {
 }
 
 /// What the writer finishes is a telegram with what it was given, for any data of 0, 1 and 4 bytes.
-//= lms200.INV-3
+//= laser.INV-3
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(12))]
 #[cfg_attr(kani, kani::solver(minisat))]
@@ -100,7 +100,7 @@ pub fn written_telegram_is_accepted() {
 }
 
 /// Every word in every mode and unit is a range or the reason why there is none, as specified.
-//= lms200.INV-6
+//= laser.INV-6
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(minisat))]
 pub fn values_are_ranges_or_missing() {
@@ -135,7 +135,7 @@ pub fn values_are_ranges_or_missing() {
 }
 
 /// Every value of every variant lies where it should, and there is none beyond the last.
-//= lms200.INV-7
+//= laser.INV-7
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::unwind(7))]
 #[cfg_attr(kani, kani::solver(minisat))]

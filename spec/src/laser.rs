@@ -1,4 +1,4 @@
-//! Chapter `lms200`: the telegrams of the SICK LMS200 laser scanner. See `spec/lms200.md`.
+//! Chapter `laser`: the telegrams of the SICK LMS200 laser scanner. See `spec/laser.md`.
 
 use crate::arcos::nothing_is_lost_of;
 
@@ -21,7 +21,7 @@ pub fn checksum(bytes: &[u8]) -> u16 {
     sum as u16
 }
 
-/// lms200.INV-1: whether `bytes` are one telegram, no more and no less.
+/// laser.INV-1: whether `bytes` are one telegram, no more and no less.
 #[must_use]
 pub fn is_telegram(bytes: &[u8]) -> bool {
     let length = bytes.len();
@@ -35,7 +35,7 @@ pub fn is_telegram(bytes: &[u8]) -> bool {
             == u32::from(bytes[length - 2]) + 256 * u32::from(bytes[length - 1])
 }
 
-/// lms200.INV-1: whether `bytes` begin with a telegram.
+/// laser.INV-1: whether `bytes` begin with a telegram.
 #[must_use]
 pub fn begins_with_telegram(bytes: &[u8]) -> bool {
     if bytes.len() < 7 {
@@ -45,7 +45,7 @@ pub fn begins_with_telegram(bytes: &[u8]) -> bool {
     bytes.len() >= length && is_telegram(&bytes[..length])
 }
 
-/// lms200.INV-2: whether a telegram found in `bytes` is their beginning, and its data all of it but
+/// laser.INV-2: whether a telegram found in `bytes` is their beginning, and its data all of it but
 /// four bytes of header, one of command and two of checksum.
 #[must_use]
 pub fn is_view(bytes: &[u8], telegram: &[u8], data: &[u8]) -> bool {
@@ -55,7 +55,7 @@ pub fn is_view(bytes: &[u8], telegram: &[u8], data: &[u8]) -> bool {
         && telegram.len() == data.len() + 7
 }
 
-/// lms200.INV-3: whether `bytes` are a telegram with this address byte, command and data.
+/// laser.INV-3: whether `bytes` are a telegram with this address byte, command and data.
 #[must_use]
 pub fn is_telegram_of(bytes: &[u8], address: u8, command: u8, data: &[u8]) -> bool {
     is_telegram(bytes)
@@ -64,14 +64,14 @@ pub fn is_telegram_of(bytes: &[u8], address: u8, command: u8, data: &[u8]) -> bo
         && bytes[5..bytes.len() - 2] == *data
 }
 
-/// lms200.INV-4: whether every telegram in `stream` that begins before `held` was delivered or lies
+/// laser.INV-4: whether every telegram in `stream` that begins before `held` was delivered or lies
 /// under one that was. `delivered` holds the place and length of each one delivered, in order.
 #[must_use]
 pub fn nothing_is_lost(stream: &[u8], delivered: &[(usize, usize)], held: usize) -> bool {
     nothing_is_lost_of(begins_with_telegram, stream, delivered, held)
 }
 
-/// lms200.INV-5: whether all bytes taken in are delivered, skipped or held, the last being less than
+/// laser.INV-5: whether all bytes taken in are delivered, skipped or held, the last being less than
 /// a telegram.
 #[must_use]
 pub fn all_bytes_are_accounted_for(
@@ -83,7 +83,7 @@ pub fn all_bytes_are_accounted_for(
     taken == delivered + skipped + held && held < 818
 }
 
-/// lms200.INV-6: whether `millimetres` is what a word means of which the lowest `bits` bits are the
+/// laser.INV-6: whether `millimetres` is what a word means of which the lowest `bits` bits are the
 /// value, in units of `unit` mm. `dazzled` says that the word has a bit for that, and it is set.
 #[must_use]
 pub fn is_reading(
@@ -103,7 +103,7 @@ pub fn is_reading(
     }
 }
 
-/// lms200.INV-7: whether value `index` of a scan over `field_of_view` degrees lies at `bearing`
+/// laser.INV-7: whether value `index` of a scan over `field_of_view` degrees lies at `bearing`
 /// hundredths of a degree: the first half a field of view to the right, each further `step`
 /// hundredths to the left of the one before, the last half a field of view to the left.
 #[must_use]
@@ -119,7 +119,7 @@ pub fn is_bearing(index: u32, field_of_view: u32, step: u32, bearing: Option<i64
     }
 }
 
-/// lms200.INV-8: whether `telegram` is one whole scan that the scanner itself trusts: a reply with
+/// laser.INV-8: whether `telegram` is one whole scan that the scanner itself trusts: a reply with
 /// values, as many as one of the five variants has, in cm or mm, with at most two index bytes behind
 /// them, and a status of severity 0, 1 or 2 without the mark of implausible values.
 #[must_use]
