@@ -106,6 +106,12 @@ fn summary(run: &Run, roadmap: &Roadmap) -> String {
         outcome.travelled,
         run.scans.len()
     );
+    if roadmap.cut_off > 0.0 {
+        text += &format!(
+            "no way leads to {:.1} m of the diagram, insides of blocks among them\n",
+            roadmap.cut_off
+        );
+    }
     text += &format!(
         "contacts while moving: {}; least clearance {:.2} m; ends with a wall too near ahead: {too_near}\n",
         run.summary.contacts_while_moving(),

@@ -32,6 +32,8 @@ pub struct Report {
     pub blocked: BTreeMap<PassageId, Step>,
     /// Not blocked, and out of reach because of what is.
     pub unreachable: BTreeSet<PassageId>,
+    /// Still to be driven.
+    pub left: BTreeSet<PassageId>,
     /// Length of the roadmap, m.
     pub length: f64,
     /// Length of the first plan, m.
@@ -121,7 +123,8 @@ impl<'a> Progress<'a> {
     #[must_use]
     pub fn report(&self) -> Report {
         let all = (0..self.roadmap.passages.len()).map(PassageId);
-        let planned: BTreeSet<_> = self.plan.iter().map(|step| step.passage).collect();
+        let planned = self.plan.iter().map(|step| step.passage);
+        let left: BTreeSet<_> = planned.filter(|id| !self.covered.contains(id)).collect();
         Report {
             covered: self.covered.clone(),
             blocked: self.blocked.clone(),
@@ -129,9 +132,10 @@ impl<'a> Progress<'a> {
                 .filter(|id| {
                     !self.covered.contains(id)
                         && !self.blocked.contains_key(id)
-                        && !planned.contains(id)
+                        && !left.contains(id)
                 })
                 .collect(),
+            left,
             length: self.roadmap.length(),
             planned: self.planned,
             driven: route::length(self.roadmap, &self.driven),
@@ -140,18 +144,16 @@ impl<'a> Progress<'a> {
     }
 }
 
-/// Names in order, or "none".
+/// How many, and their names.
 struct Names<I>(I);
 
 impl<I: Iterator<Item = PassageId> + Clone> fmt::Display for Names<I> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut between = "";
+        write!(f, "{} edges", self.0.clone().count())?;
+        let mut between = ": ";
         for id in self.0.clone() {
             write!(f, "{between}{id}")?;
             between = ", ";
-        }
-        if between.is_empty() {
-            f.write_str("none")?;
         }
         Ok(())
     }
@@ -159,21 +161,16 @@ impl<I: Iterator<Item = PassageId> + Clone> fmt::Display for Names<I> {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let count = self.covered.len() + self.unreachable.len();
-        let only_blocked = self.blocked.keys().filter(|id| !self.covered.contains(id));
-        writeln!(
-            f,
-            "covered: {} of {} edges: {}",
-            self.covered.len(),
-            count + only_blocked.count(),
-            Names(self.covered.iter().copied())
-        )?;
+        writeln!(f, "covered: {}", Names(self.covered.iter().copied()))?;
         writeln!(f, "blocked: {}", Names(self.blocked.keys().copied()))?;
         writeln!(
             f,
             "cut off by what is blocked: {}",
             Names(self.unreachable.iter().copied())
         )?;
+        if !self.left.is_empty() {
+            writeln!(f, "NOT DRIVEN: {}", Names(self.left.iter().copied()))?;
+        }
         write!(
             f,
             "edges {:.1} m; first route {:.1} m; driven {:.1} m over {} plans",

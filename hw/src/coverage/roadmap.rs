@@ -102,8 +102,8 @@ pub struct Roadmap {
     pub passages: Vec<Passage>,
     /// Where on the roadmap the robot starts.
     pub home: NodeIndex,
-    /// Length of what the robot could drive if it got there, m: parts of the diagram that no way
-    /// leads to, rooms behind doors too narrow among them.
+    /// Length of what is wide enough but no way leads to, m: rooms behind doors too narrow, and the
+    /// insides of whatever is drawn as its outline.
     pub cut_off: f64,
 }
 
