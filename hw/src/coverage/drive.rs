@@ -329,9 +329,11 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
     if let Some(failure) = failure {
         return Err(failure);
     }
+    let stuck = |(_, happening): &(u64, Happening)| *happening == Happening::Stuck;
+    let is_stuck = happenings.iter().any(stuck);
     Ok(Run {
         report: progress.report(),
-        is_home: progress.next().is_none(),
+        is_home: progress.next().is_none() && !is_stuck,
         summary,
         simulation,
         happenings,

@@ -21,6 +21,7 @@ pub mod floor;
 pub mod progress;
 pub mod roadmap;
 pub mod route;
+pub mod trial;
 pub mod voronoi;
 
 pub use floor::{Floor, FloorError};
