@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::Sighting;
-use crate::quantity::{Angle, Instant, Length, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Instant, Length, OutOfRange, Speed, in_range, within};
 use crate::track::Obstacle;
 use crate::view::View;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -50,6 +50,7 @@ pub fn lateral_speed(sighting: &Sighting, speed: Speed, heading: Angle) -> Resul
 
 /// S1 E2's two terms, the speed seen and the robot's own (signed) share, put together so that the
 /// result is a bound whichever side the obstacle comes from (triangle inequality, ER-S1-07).
+//= avoid.INV-2
 #[must_use]
 pub fn lateral_bound(seen: f32, own: f32) -> f32 {
     seen + own.abs()
@@ -59,6 +60,8 @@ pub fn lateral_bound(seen: f32, own: f32) -> f32 {
 ///
 /// v_o = min(v_o,max, E2/cos θ_o) for θ_o in [0, 60°]; v_o,max, saturated, for every other θ_o and
 /// for every sighting that is not usable. Total: any bit pattern gives a speed in [0, v_o,max].
+//= avoid.INV-1
+//= avoid.INV-3
 #[must_use]
 pub fn obstacle_speed(
     sighting: &Sighting,
@@ -91,6 +94,7 @@ pub fn obstacle_speed(
 ///
 /// # Errors
 /// [`OutOfRange`] if the angle is not in [0, 2π].
+//= avoid.INV-14
 pub fn image_direction(global_orientation: f32) -> Result<(f32, bool), OutOfRange> {
     let orientation = in_range(
         "global orientation",
@@ -160,6 +164,7 @@ pub fn contact_time_bound(
 
 /// Quotient of two numbers ≥ 0 that are not NaN: `None` if the divisor is zero, or so small that
 /// the quotient is not finite.
+//= avoid.INV-4
 fn quotient(dividend: f32, divisor: f32) -> Option<f32> {
     if divisor > 0.0 {
         let quotient = dividend / divisor;
@@ -176,6 +181,7 @@ pub struct QuarterTurns(f32);
 
 impl QuarterTurns {
     /// S1 E5: Δθ = (π/2)(k_θ/d_o), at most half a turn; half a turn at distance 0.
+    //= avoid.INV-6
     #[must_use]
     pub fn at_distance(distance: Length, turn_distance: Length) -> Self {
         if distance.get() * 2.0 <= turn_distance.get() {
@@ -228,6 +234,7 @@ impl Side {
 
     /// The side away from an obstacle at `bearing` from the reference heading. Straight ahead
     /// (or unknown) it is the side with more measured clearance, and left on a tie.
+    //= avoid.INV-7
     #[must_use]
     pub fn away_from(bearing: Angle, clearance_left: Length, clearance_right: Length) -> Self {
         if bearing.get() > 0.0 {
@@ -242,6 +249,7 @@ impl Side {
 
 /// S1 E5: heading of the maneuver, θ_m = θ_ref + σ·Δθ, wrapped. The reference is the goal heading
 /// latched when the maneuver began, not the current heading (ER-S1-03).
+//= avoid.INV-8
 #[must_use]
 pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Angle {
     match side {
@@ -251,6 +259,7 @@ pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Ang
 }
 
 /// S1 E7: speed of the maneuver, v_R = v_max(1 − |½ − |Δθ|/π|), in [v_max/2, v_max].
+//= avoid.INV-9
 #[must_use]
 pub fn maneuver_speed(speed_max: Speed, turn: QuarterTurns) -> Speed {
     let half = turn.get() / 2.0;
@@ -269,6 +278,7 @@ pub enum Arrival {
 }
 
 /// S1 A1: being near something is not having arrived.
+//= avoid.INV-12
 #[must_use]
 pub fn arrival(
     front: Length,
@@ -340,6 +350,8 @@ pub struct Situation {
 
 /// M1: the mode that follows `mode`. A guard comes before everything else; for an unchanging
 /// situation the machine is at rest after at most two steps.
+//= avoid.INV-10
+//= avoid.INV-11
 #[must_use]
 pub fn next_mode(mode: Mode, situation: &Situation, config: &Config) -> Mode {
     if mode == Mode::Arrived || situation.at_goal {
@@ -596,6 +608,7 @@ impl Avoid {
 }
 
 impl<const N: usize> Law<N> for Avoid {
+    //= avoid.INV-13
     fn advise(&mut self, view: &View<N>) -> Advice {
         let receding = view
             .obstacle
@@ -614,7 +627,7 @@ impl<const N: usize> Law<N> for Avoid {
         Advice {
             // First turn, then go.
             speed: speed * (1.0 - error.abs() / FRAC_PI_2).max(0.0),
-            turn_rate: (self.config.heading_gain * error).clamp(-turn_rate_max, turn_rate_max),
+            turn_rate: within(self.config.heading_gain * error, turn_rate_max),
         }
     }
 

@@ -106,6 +106,8 @@ impl EdgeConfig {
 // ------------------------------------------------------------------------------ the equations
 
 /// S4 E1: how near an echo is, N1 = 10·(R − r)/R for r ≤ R, else 0; 0 to 10.
+//= edge.INV-1
+//= edge.INV-4
 #[must_use]
 pub fn nearness(range: Length, config: &EdgeConfig) -> f32 {
     let left = config.range_max - range.get();
@@ -122,6 +124,7 @@ pub fn nearness(range: Length, config: &EdgeConfig) -> f32 {
 ///
 /// Beyond D (and for NaN) there is no value: the detector is blind there, and blind is not free
 /// (ER-S4-07).
+//= edge.INV-2
 #[must_use]
 pub fn closeness(distance: f32, config: &EdgeConfig) -> Option<f32> {
     let part = distance.abs() / config.distance_max;
@@ -131,6 +134,8 @@ pub fn closeness(distance: f32, config: &EdgeConfig) -> Option<f32> {
 /// S4 E3 and E4: the projection P = N1·N2·max(0, cos α) of a sonar vector on the actual edge, 0 to
 /// 10·N2. `cosine` is that of the angle α between the sonar's axis and the actual edge; what looks
 /// back counts as 0, and so does NaN.
+//= edge.INV-3
+//= edge.INV-5
 #[must_use]
 pub fn projection(nearness: f32, closeness: f32, cosine: f32) -> f32 {
     let along = if cosine > 0.0 { cosine.min(1.0) } else { 0.0 };
@@ -218,6 +223,8 @@ pub enum Blindness {
 ///
 /// An obstacle is one although another sonar may be stale; a ring is only [`Detection::Clear`] if
 /// every sonar is heard and the robot is within d_max of the edge.
+//= edge.INV-6
+//= edge.INV-7
 #[must_use]
 pub fn detect<const N: usize>(
     sonar: &[SonarReading; N],
@@ -699,6 +706,7 @@ impl<'a> Sight<'a> {
 /// a beam that is not usable, what is outside the scanner's field of view, and the rest of the angle up
 /// to the beam that first passes a surface. What the obstacle itself hides is found out on the way
 /// past it. The gap is the widest stretch that nothing blocks, within 1.5 m of the edge.
+//= edge.INV-13
 #[must_use]
 pub fn free_way(
     scan: &Scan<'_>,
@@ -848,6 +856,9 @@ pub struct Situation {
 }
 
 /// M3: the state that follows `state`.
+//= edge.INV-10
+//= edge.INV-11
+//= edge.INV-12
 #[must_use]
 pub const fn next_state(state: State, situation: &Situation) -> State {
     match state {
@@ -917,7 +928,7 @@ const LOOKS_MAX: u32 = 4;
 const PROGRESS: f32 = 0.3;
 
 /// Heading error up to which a leg is driven; above it the robot turns on the spot, rad.
-const TURNED: f32 = 0.15;
+pub const TURNED: f32 = 0.15;
 
 /// A leg ends this much before its end point, m.
 const LEG_END: f32 = 0.03;
@@ -1369,6 +1380,7 @@ pub fn unexplained<const N: usize>(
 /// Steers along a line: towards the point of it that is `look_ahead` ahead of the robot, no faster
 /// than `speed`. A robot that looks elsewhere turns first. Total: the turn rate is within ±ω_max and
 /// the speed in [0, `speed`], whatever comes in.
+//= edge.INV-8
 #[must_use]
 pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice {
     let turn_rate_max = config.turn_rate_max;
@@ -1380,6 +1392,18 @@ pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice 
     Advice {
         speed: (speed.clamp(0.0, config.speed_max)) * if share > 0.0 { share } else { 0.0 },
         turn_rate: turn_rate.clamp(-turn_rate_max, turn_rate_max),
+    }
+}
+
+/// What a state lets through of a wish to move: nothing at all where it rests, or where the detector
+/// is blind.
+//= edge.INV-9
+#[must_use]
+pub fn permitted(state: State, sees: bool, wish: Advice) -> Advice {
+    if state.at_rest() || !sees {
+        Advice::REST
+    } else {
+        wish
     }
 }
 
@@ -1497,20 +1521,10 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
         if self.state != before {
             self.enter(&edge, view, detected, hindrance);
         }
-        if self.state.at_rest() {
-            self.told_to_move = false;
-            return Advice::REST;
-        }
-        if self.state != before && (leg || self.state == State::SubRoute) {
-            // The line is another now: look along it in the next tick.
-            self.told_to_move = false;
-            return Advice::REST;
-        }
-        let advice = if hears {
-            self.drive(&line, leg, &pose)
-        } else {
-            Advice::REST
-        };
+        // Where the line is another now, look along it first.
+        let same_line = self.state == before || !(leg || self.state == State::SubRoute);
+        let wish = self.drive(&line, leg, &pose);
+        let advice = permitted(self.state, hears && same_line, wish);
         self.told_to_move = advice != Advice::REST;
         advice
     }

@@ -50,6 +50,9 @@ pub(crate) struct Track {
     position: Vector2<f32>,
     distance: Length,
     sonar: usize,
+    /// Of that sonar, as in [`Echo`].
+    contact_range: i32,
+    inset: f32,
     seen: Instant,
     /// Ticks in which a sonar saw past its place since it was seen there.
     absent: u32,
@@ -71,7 +74,12 @@ pub(crate) struct Look<'a> {
 /// One echo, placed.
 #[derive(Clone, Copy)]
 struct Echo {
+    /// Which sonar heard it.
     sonar: usize,
+    /// Its contact range, mm.
+    contact_range: i32,
+    /// How far it is from the robot's centre, m.
+    inset: f32,
     distance: Length,
     position: Vector2<f32>,
 }
@@ -84,6 +92,8 @@ impl Track {
             position: echo.position,
             distance: echo.distance,
             sonar: echo.sonar,
+            contact_range: echo.contact_range,
+            inset: echo.inset,
             seen: now,
             absent: 0,
             history,
@@ -108,12 +118,11 @@ impl Track {
     }
 
     /// The same obstacle, not seen this time: its distance follows from where it was.
-    fn unseen<const N: usize>(&self, seen_past: bool, pose: &Pose, ring: &Ring<N>) -> Self {
+    fn unseen(&self, seen_past: bool, pose: &Pose) -> Self {
         let offset = math::norm(self.position - pose.position);
-        let inset = math::norm(ring.sonars()[self.sonar].position);
         Self {
             absent: self.absent.saturating_add(u32::from(seen_past)),
-            distance: Length::metres((offset - inset).max(0.0)).unwrap_or(self.distance),
+            distance: Length::metres((offset - self.inset).max(0.0)).unwrap_or(self.distance),
             ..*self
         }
     }
@@ -137,12 +146,7 @@ impl Track {
     }
 
     /// What the law is told of the obstacle.
-    pub(crate) fn obstacle<const N: usize>(
-        &self,
-        look: &Look<'_>,
-        ring: &Ring<N>,
-        config: &Config,
-    ) -> Obstacle {
+    pub(crate) fn obstacle(&self, look: &Look<'_>, config: &Config) -> Obstacle {
         let Look { now, pose, .. } = *look;
         let offset = self.position - pose.position;
         let direction = Angle::radians(math::atan2(offset.y, offset.x)).unwrap_or(Angle::ZERO);
@@ -172,7 +176,7 @@ impl Track {
         };
         Obstacle {
             distance: self.distance,
-            contact_range: ring.sonars()[self.sonar].contact_range,
+            contact_range: self.contact_range,
             direction,
             position: self.position,
             trend,
@@ -232,16 +236,18 @@ pub(crate) fn follow<const N: usize>(
     let mut nearest: Option<Echo> = None;
     let mut matched: Option<(Echo, f32)> = None;
     let mut seen_past = false;
-    for (i, (reading, at)) in sonar.iter().zip(ring.sonars()).enumerate() {
+    for (i, ((reading, at), fresh)) in sonar.iter().zip(ring.sonars()).zip(fresh).enumerate() {
         let SonarReading::Echo(distance) = *reading else {
             continue;
         };
-        if !fresh[i] {
+        if !fresh {
             continue;
         }
         let point = at.position + at.axis * distance.get();
         let echo = Echo {
             sonar: i,
+            contact_range: at.contact_range,
+            inset: math::norm(at.position),
             distance,
             position: pose.to_world(point),
         };
@@ -266,7 +272,7 @@ pub(crate) fn follow<const N: usize>(
             _ => Some(old.seen_at(echo, now)),
         },
         (Some(old), None) => {
-            let old = old.unseen(seen_past, pose, ring);
+            let old = old.unseen(seen_past, pose);
             let gone = old.absent >= config.confirm_samples as u32;
             let expired = now
                 .since(old.seen)

@@ -128,6 +128,7 @@ pub struct Odometer {
 
 impl Odometer {
     /// Adds the way from one pose to the next.
+    //= view.INV-5
     #[must_use]
     pub fn advanced(self, from: &Pose, to: &Pose) -> Self {
         let offset = to.position - from.position;
@@ -244,6 +245,7 @@ impl<const N: usize> Memory<N> {
     /// # Errors
     /// The reason to stop if there is no usable odometry: without a pose there is no view. What
     /// the sonars saw is remembered all the same.
+    //= view.INV-4
     pub fn update(
         &mut self,
         observation: &Observation<N>,
@@ -314,9 +316,11 @@ impl<const N: usize> Memory<N> {
                 pose: &pose,
                 speed,
                 sighting: observation.sighting.as_ref(),
-                still: hazard[track.sonar()].class == Class::Still,
+                still: hazard
+                    .get(track.sonar())
+                    .is_some_and(|hazard| hazard.class == Class::Still),
             };
-            track.obstacle(&look, ring, config)
+            track.obstacle(&look, config)
         });
         Ok(View {
             now,
@@ -394,9 +398,9 @@ const SCATTER: i32 = 100;
 /// Turning by no more than this between two readings, mrad, a sonar looks in the same direction.
 const SAME_DIRECTION: i32 = 30;
 
-/// A still surface that is heard at 75° to its normal comes nearer by four times the way that the
+/// A still surface that is heard at 60° to its normal comes nearer by twice the way that the
 /// robot's motion takes the cone along it.
-const GRAZING: i32 = 4;
+const GRAZING: i32 = 2;
 
 /// What is nearer by more than this explains, m/s, is another thing: nobody runs that fast indoors.
 const FASTEST: f32 = 4.0;
@@ -468,6 +472,8 @@ impl EchoMemory {
 
     /// Takes in a look and holds on to what was heard until its place is seen to be free or the
     /// hold time is over (view.INV-2, view.INV-3).
+    //= view.INV-2
+    //= view.INV-3
     pub fn update(&mut self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         if let Some(range) = look.measured {
             self.compare(range, look, sonar, config);
@@ -478,6 +484,7 @@ impl EchoMemory {
 
     /// Compares a new echo with those before it: does the thing stand still, is it too fast, does
     /// the sonar hear at all?
+    //= view.INV-6
     fn compare(&mut self, range: i32, look: &Look, sonar: &Sonar, config: &Config) {
         let echo = Echo {
             range,
@@ -498,6 +505,7 @@ impl EchoMemory {
         if u64::from(gap.unsigned_abs()) > milliseconds(config.sonar_age_max) {
             self.agreed = 0;
             self.anchor = None;
+            self.unchanged_since = look.odometer.way[0];
         }
         let tolerance = millimetres_up(config.still_tolerance);
         let anchor = self.anchor.unwrap_or(latest);
@@ -612,6 +620,8 @@ impl EchoMemory {
     }
 
     /// What follows for the shield.
+    //= view.INV-5
+    //= view.INV-7
     fn hazard(&self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         let loss = sonar.contact_range + millimetres_up(config.range_error);
         let Some(held) = self.held else {

@@ -15,6 +15,7 @@ use sidestep::quantity::{Angle, Instant, Length};
 use sidestep::ring::{Placement, Ring};
 use sidestep::view::{Pose, View};
 use sidestep_spec::edge as law;
+use std::f64::consts::FRAC_PI_2;
 
 mod common;
 
@@ -322,13 +323,13 @@ proptest! {
         let beams = 721;
         let ranges: Vec<f32> = (0..beams)
             .map(|i| {
-                let angle = heading.to_radians() - 1.5708 + f64::from(i) * step;
+                let angle = heading.to_radians() - FRAC_PI_2 + f64::from(i) * step;
                 cast([0.0, lateral], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
             })
             .collect();
         let scan = Scan::new(
             Placement { x: 0.0, y: 0.0, heading: 0.0 },
-            -1.5708, step as f32, 8.0, &ranges, Instant(0),
+            -FRAC_PI_2 as f32, step as f32, 8.0, &ranges, Instant(0),
         )
         .expect("a scan");
         let along = edge([0.0, 0.0], [3.0, 0.0]);
@@ -693,7 +694,7 @@ fn corridor_scan(free: f64, step: f64) -> Vec<f32> {
     let beams = (std::f64::consts::PI / step).round() as u32 + 1;
     (0..beams)
         .map(|i| {
-            let angle = -std::f64::consts::FRAC_PI_2 + f64::from(i) * step;
+            let angle = -FRAC_PI_2 + f64::from(i) * step;
             cast([0.0, 0.0], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
         })
         .collect()
@@ -707,7 +708,7 @@ fn measure(free: f64, step_deg: f64) -> FreeWay {
         y: 0.0,
         heading: 0.0,
     };
-    let first = -std::f32::consts::FRAC_PI_2;
+    let first = -FRAC_PI_2 as f32;
     let scan = Scan::new(placement, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
     let along = edge([0.0, 0.0], [3.0, 0.0]);
     edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, -0.06), 0.6)
@@ -758,7 +759,7 @@ fn unseen_is_not_free() {
         let scan = scan.expect("a scan");
         edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, -0.1), 0.6)
     };
-    let first = -std::f64::consts::FRAC_PI_2;
+    let first = -FRAC_PI_2;
     assert!(look(&ranges, first).passable);
     // A scanner that looks only 40° to the left sees 0.42 m there.
     let part = &ranges[..=260];
@@ -780,7 +781,7 @@ fn what_only_a_sonar_hears_counts() {
     ];
     let ranges: Vec<f32> = (0..361)
         .map(|i| {
-            let angle = -std::f64::consts::FRAC_PI_2 + f64::from(i) * step;
+            let angle = -FRAC_PI_2 + f64::from(i) * step;
             cast([0.0, 0.0], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
         })
         .collect();
@@ -789,7 +790,7 @@ fn what_only_a_sonar_hears_counts() {
         y: 0.0,
         heading: 0.0,
     };
-    let first = -std::f32::consts::FRAC_PI_2;
+    let first = -FRAC_PI_2 as f32;
     let scan = Scan::new(placement, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
     let along = edge([0.0, 0.0], [3.0, 0.0]);
     let found = edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, 0.0), 0.6);
@@ -829,7 +830,7 @@ fn law_goes_through_its_states() {
             heading: 0.0,
         };
         let scan = |taken_at| {
-            let first = -std::f32::consts::FRAC_PI_2;
+            let first = -FRAC_PI_2 as f32;
             let step = 0.5_f32.to_radians();
             Scan::new(placement, first, step, 8.0, &ranges, Instant(taken_at)).expect("a scan")
         };
@@ -858,6 +859,47 @@ fn law_goes_through_its_states() {
             assert!(driver.advise(&view).turn_rate != 0.0);
         }
     }
+}
+
+/// Something that was there and has left: the robot follows the edge again.
+#[test]
+fn what_has_left_is_forgotten() {
+    let route = vec![edge([0.0, 0.0], [3.0, 0.0])];
+    let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
+    let mut view = quiet_view();
+    view.pose = pose(0.0, 0.0, 0.0);
+    view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+    driver.advise(&view);
+    view.sonar[4] = echo(0.35);
+    for now in [100, 200, 300] {
+        view.now = Instant(now);
+        driver.advise(&view);
+    }
+    assert_eq!(driver.state(), State::Measure);
+    let ranges = vec![f32::INFINITY; 361];
+    let placement = Placement {
+        x: 0.0,
+        y: 0.0,
+        heading: 0.0,
+    };
+    let first = -FRAC_PI_2 as f32;
+    let scan = Scan::new(placement, first, 0.0087, 8.0, &ranges, Instant(350)).expect("a scan");
+    // As long as the sonar hears it, it is there, whatever the laser says.
+    driver.take_scan(&scan);
+    let mut still_there = driver.clone();
+    let mut states = Vec::new();
+    for now in [400, 500, 600, 700] {
+        view.now = Instant(now);
+        still_there.advise(&view);
+        states.push(still_there.state());
+    }
+    assert!(!states.contains(&State::FollowEdge), "{states:?}");
+    view.sonar[4] = SonarReading::NoEcho(Length::MAX);
+    for now in [400, 500, 600] {
+        view.now = Instant(now);
+        driver.advise(&view);
+    }
+    assert_eq!(driver.state(), State::FollowEdge);
 }
 
 /// Routes with holes are refused, with the number.

@@ -121,6 +121,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 )]),
             }
         }
+        //= avoid.INV-2
         ("S1.E2", "lit") => Computed {
             reference: vec![(
                 "v_o_cos_theta_o_cm_s",
@@ -134,6 +135,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
             )],
             core: None,
         },
+        //= avoid.INV-1
+        //= avoid.INV-3
         ("S1.E3", variant) => {
             let terms = [
                 "dp_px",
@@ -183,6 +186,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-4
         ("S1.E4", "rec") => {
             let (t, stop) = spec::avoid::e4_bound(
                 i.number("d_o_cm"),
@@ -221,6 +225,9 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-6
+        //= avoid.INV-7
+        //= avoid.INV-8
         ("S1.E5", "rec") => {
             let bearing = i.number("obstacle_bearing_deg");
             let reference_heading = i.number("theta_ref_rad");
@@ -266,6 +273,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("theta_m_rad", radians(core.get()))]),
             }
         }
+        //= avoid.INV-9
         ("S1.E7", variant) => {
             let (turn, speed_max) = (i.number("dtheta_rad"), i.number("v_max_cm_s"));
             let reference = if variant == "lit" {
@@ -306,6 +314,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 }),
             }
         }
+        //= avoid.INV-12
         ("S1.A1", "rec") => {
             let (goal, customer) = (i.truth("goal_pose_reached"), i.truth("customer_confirmed"));
             let core = avoid::arrival(
@@ -325,6 +334,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("result", Value::from(format!("{core:?}")))]),
             }
         }
+        //= avoid.INV-14
         ("S1.A3", "rec") => {
             let orientation = i.number("global_orientation_deg");
             let (image, folded, approaching) = spec::avoid::a3(orientation);
@@ -345,6 +355,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= avoid.INV-10
+        //= avoid.INV-11
         ("S1.A4", "rec") => {
             let (distance, time) = (i.number("d_o_cm"), i.number("ttc_s"));
             let fresh = i.truth("sensors_fresh");
@@ -402,6 +414,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= kinematics.INV-1
         ("S2.E5", variant) => {
             let (radius, right, left) = (i.number("R_m"), i.number("omega_r"), i.number("omega_l"));
             let base = if variant == "rec" {
@@ -472,6 +485,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
         .expect("a configuration")
     };
     let computed = match (equation, variant) {
+        //= edge.INV-1
         ("S4.E1", "lit") => {
             let (r, most) = (i.number("r_mm"), i.number("range_max_mm"));
             let core = edge::nearness(range(r), &config(most, 300.0));
@@ -480,6 +494,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("N1", number(f64::from(core)))]),
             }
         }
+        //= edge.INV-2
         ("S4.E2", variant @ ("lit" | "rec")) => {
             let (d, most) = (i.number("d_mm"), i.number("d_max_mm"));
             let core = edge::closeness(metres(d), &config(600.0, most));
@@ -502,6 +517,8 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 }
             }
         }
+        //= edge.INV-3
+        //= edge.INV-7
         ("S4.E4", "rec") => {
             let (r, d, alpha) = (i.number("r_mm"), i.number("d_mm"), i.number("alpha_deg"));
             let (most, off) = (i.number("range_max_mm"), i.number("d_max_mm"));
@@ -567,6 +584,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= edge.INV-5
         ("S4.wall_bound", "derived") => {
             let (width, d) = (i.number("W_mm"), i.number("d_mm"));
             let rho = i.number("rho_mm");
@@ -580,6 +598,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= edge.INV-4
         ("S4.detect_range", "derived") => {
             let (d, alpha) = (i.number("d_mm"), i.number("alpha_deg"));
             let threshold = i.number("threshold");
@@ -589,6 +608,7 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= edge.INV-13
         ("S4.freeway", "rec") => {
             let ([right, left], safe) = (pair(&i.0["gap_mm"]), i.number("safe_path_mm"));
             let (width, middle, passable) = spec::edge::free_gap(right, left, safe);

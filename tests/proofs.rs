@@ -130,8 +130,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         turn_is_at_most_half, maneuver_turns_away, maneuver_speed_is_bounded, modes_settle,
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
-    edge: projections_are_bounded, blind_is_never_clear, steering_is_bounded,
-        machine_stops_and_looks, any_view_is_driven_within_limits;
+    edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
+        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;

@@ -1,9 +1,9 @@
 //! Bytes as a stream from the laser scanner.
 
-use sidestep::lms200::{
+use sidestep::laser::{
     MAX_TELEGRAM, MeasuringMode, Reading, Receiver, Reply, Scan, Telegram, TelegramWriter,
 };
-use sidestep_spec::lms200 as law;
+use sidestep_spec::laser as law;
 
 /// The bytes as a stream, handed over in pieces whose size the first byte tells; then all of them as
 /// the data of one telegram, since a fuzzer seldom finds a checksum.

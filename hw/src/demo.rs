@@ -60,7 +60,9 @@ impl Summary {
         driving.people + driving.obstacles + turning.people + turning.obstacles
     }
 
-    fn text(&self, scenario: &Scenario) -> String {
+    /// What came of it, in lines.
+    #[must_use]
+    pub fn text(&self, scenario: &Scenario) -> String {
         let mut text = String::new();
         let least = self.outcome.minimum_clearance_while_driving;
         let clearance = |metres: f64| {
@@ -147,7 +149,10 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
 }
 
 /// A folder that did not exist, named after a scenario and numbered.
-pub(crate) fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+///
+/// # Errors
+/// If no folder can be made.
+pub fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {

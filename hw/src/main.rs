@@ -5,6 +5,7 @@ use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::coverage;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
+use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
 use sidestep_hw::pilot::{Pilot, settings};
@@ -41,8 +42,9 @@ enum Command {
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
-    /// people; needs --data), coverage (every edge of a floor, some of them blocked, by S4 with a
-    /// laser; in virtual time; --data FILE for a floor of your own).
+    /// people; needs --data); edge (S4: a planned way through corridors with three obstacles, and a
+    /// classical detector on the same way; no pseudo-terminal and no log); coverage (every edge of a
+    /// floor, some of them blocked, by S4 with a laser; likewise; --data FILE for a floor of your own).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -262,6 +264,10 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
+    if options.scenario == edge::NAME {
+        edge::demo(options, &mut status)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut contacts = 0;
     if options.scenario == coverage::demo::NAME {
         let (folder, run) = coverage::demo::run(options, &mut status)?;

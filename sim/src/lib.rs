@@ -8,7 +8,7 @@
 //! - [`laser`]: a scanner beside them, not on the serial line.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
 //!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
-//! - [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
+//! - [`corridor`]: planned ways through corridors; [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
 //!   from a seed; [`simulation`]: everything advanced together, with a judgement of every contact;
 //!   [`truth`]: which assumption of a shield did not hold in it.
 //!
@@ -32,6 +32,7 @@
 pub mod barn;
 pub mod base;
 pub mod compass;
+pub mod corridor;
 pub mod episode;
 mod error;
 pub mod eth;

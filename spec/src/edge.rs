@@ -200,7 +200,7 @@ pub fn closeness_in_range(closeness: Option<f32>, distance: f32, distance_max: f
     match closeness {
         Some(n2) => (0.399_999..=1.0).contains(&n2) && distance.abs() <= distance_max,
         // The quotient of two floats may round past 1 at the last bit below D only.
-        None => !(distance.abs() < 0.999_999 * distance_max),
+        None => distance.is_nan() || distance.abs() >= 0.999_999 * distance_max,
     }
 }
 
