@@ -12,8 +12,10 @@ use crate::demo::{Summary, run_watched};
 use crate::edge::{Driver, in_world, robot_for, route};
 use crate::laser::LaserScan;
 use crate::pilot::Pilot;
-use sidestep::edge::{Edge, EdgeConfig, Event, PlannedEdge};
+use nalgebra::Vector2;
+use sidestep::edge::{Edge, EdgeConfig, Event, PlannedEdge, State};
 use sidestep::laser::{MAX_TELEGRAM, MeasuringMode, Receiver, Scan, Status, Unit, Variant};
+use sidestep::quantity::OutOfRange;
 use sidestep::ring::Placement;
 use sidestep_sim::geometry::{Point, Pose};
 use sidestep_sim::laser::{self, Laser};
@@ -25,8 +27,18 @@ use std::error::Error;
 
 /// A place nearer than this is where the robot is, m.
 const THERE: f64 = 0.05;
-/// How often the way back from a blocked passage is tried before the robot is given up as stuck.
-const WAYS_BACK: u32 = 3;
+/// A corner nearer than this is not driven to on the way back, m: less than S4's d_max, so that the next
+/// leg can be joined from there.
+const BESIDE: f64 = 0.25;
+/// A robot that went round something and past the end of a leg has driven it if it is no farther than
+/// this from the end, m.
+const PASSED: f32 = 0.7;
+/// How often a blocked robot tries to get away from where it stands before it is given up as stuck.
+const TRIES: u32 = 6;
+/// Within this of where the next passage begins the robot may cut the corner, m.
+const NEAR: f64 = 1.2;
+/// How far into the next passage it goes when it cuts the corner, m.
+const CUT: f64 = 0.6;
 /// The LMS200 in its usual mode sees as far as this, mm.
 const REACH: u32 = 8000;
 
@@ -102,13 +114,15 @@ struct Legs {
 }
 
 /// The legs of what is planned, for a robot at `from` that first goes by `back` to where the plan
-/// begins. None if there is nothing to drive.
+/// begins, or, if it cuts the corner, straight to a little way into the first passage. None if there is
+/// nothing to drive.
 fn legs(
     floor: &Floor,
     progress: &Progress<'_>,
     roadmap: &Roadmap,
     from: Point,
     back: &[Point],
+    cuts_corner: bool,
 ) -> Result<Option<Legs>, Box<dyn Error>> {
     let mut edges = Vec::new();
     let mut ends = Vec::new();
@@ -120,14 +134,36 @@ fn legs(
             at = *corner;
         }
     }
-    for step in progress.plan() {
-        let course = roadmap.passage(step.passage).course(step.reversed);
+    for (i, step) in progress.plan().enumerate() {
+        let mut course = roadmap.passage(step.passage).course(step.reversed);
+        if i == 0 && cuts_corner {
+            course = behind(&course, CUT);
+            edges.extend(route(&floor.start, &[at, course[0]])?);
+            ends.push(None);
+        }
         let pieces = route(&floor.start, &course)?;
         let count = pieces.len();
         ends.extend((1..=count).map(|i| Some(i == count)));
         edges.extend(pieces);
     }
     Ok((!edges.is_empty()).then_some(Legs { edges, ends }))
+}
+
+/// What is left of a course behind its first `length` metres, or its last leg's end half.
+fn behind(course: &[Point], length: f64) -> Vec<Point> {
+    let mut left = length;
+    for (i, pair) in course.windows(2).enumerate() {
+        let leg = pair[1] - pair[0];
+        let is_last = i + 2 == course.len();
+        if leg.norm() > left + THERE || is_last {
+            let part = (left / leg.norm()).min(0.5_f64.max(1.0 - THERE / leg.norm()));
+            let mut rest = vec![pair[0] + leg * part];
+            rest.extend_from_slice(&course[i + 1..]);
+            return rest;
+        }
+        left -= leg.norm();
+    }
+    course.to_vec()
 }
 
 /// A simulated LMS200 on the robot.
@@ -196,6 +232,63 @@ fn believed(pilot: &Pilot<Driver, 8>, floor: &Floor) -> Point {
     })
 }
 
+/// The legs that are left for a robot at `at` (m, odometry frame) that a sub-route has taken past the
+/// end of leg `leg`, so that it need not go back to what it has just gone round. None if it is not
+/// past it.
+fn rest(legs: &Legs, leg: usize, at: Vector2<f32>) -> Result<Option<Legs>, OutOfRange> {
+    let (Some(now), Some(Some(_))) = (legs.edges.get(leg), legs.ends.get(leg)) else {
+        return Ok(None);
+    };
+    if now.to_edge(at).x < now.length() || (at - now.end()).norm() > PASSED {
+        return Ok(None);
+    }
+    let mut edges = legs.edges[leg + 1..].to_vec();
+    let mut ends = legs.ends[leg + 1..].to_vec();
+    if let Some(next) = edges.first().copied() {
+        // Where the next leg is nearest, but not at its very end.
+        let along = next
+            .to_edge(at)
+            .x
+            .clamp(0.0, (next.length() - 0.05).max(0.0));
+        let joins = next.to_world(Vector2::new(along, 0.0));
+        edges[0] = PlannedEdge::new(joins, next.end())?;
+        if f64::from((joins - at).norm()) > BESIDE {
+            edges.insert(0, PlannedEdge::new(at, joins)?);
+            ends.insert(0, None);
+        }
+    }
+    Ok(Some(Legs { edges, ends }))
+}
+
+/// From a place in a passage back to where it begins: the corners that have been passed, the last one
+/// first. `begun` is where the leg begins on which the way was found blocked.
+///
+/// A robot that has gone aside may be nearer to an earlier leg than to that one, and is not to go on to
+/// where it begins.
+fn way_back(course: &[Point], begun: Point, at: Point) -> Vec<Point> {
+    let passed = course
+        .iter()
+        .position(|corner| (corner - begun).norm() < THERE)
+        .unwrap_or_default();
+    let far = |leg: &[Point]| {
+        let along = leg[1] - leg[0];
+        let part = (at - leg[0]).dot(&along) / along.norm_squared();
+        (leg[0] + along * part.clamp(0.0, 1.0) - at).norm()
+    };
+    let legs = course.windows(2).take(passed + 1).enumerate();
+    let nearest = legs.min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+    let mut back: Vec<Point> = course[..=nearest.map_or(0, |(leg, _)| leg)].to_vec();
+    while back.len() > 1
+        && back
+            .last()
+            .is_some_and(|corner| (corner - at).norm() < BESIDE)
+    {
+        back.pop();
+    }
+    back.reverse();
+    back
+}
+
 /// Drives a coverage in virtual time; `tell` hears of everything as it happens, with the time in ms.
 ///
 /// # Errors
@@ -215,8 +308,15 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
     };
     let mut progress = Progress::new(roadmap);
     let home = [roadmap.graph[roadmap.home]];
-    let mut legs_now = legs(floor, &progress, roadmap, floor.start.position, &home)?
-        .ok_or("there is nothing to drive")?;
+    let mut legs_now = legs(
+        floor,
+        &progress,
+        roadmap,
+        floor.start.position,
+        &home,
+        false,
+    )?
+    .ok_or("there is nothing to drive")?;
     let law: Driver = Edge::new(
         job.config.core,
         EdgeConfig::new(job.edge)?,
@@ -231,7 +331,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
     let mut happenings = Vec::new();
     let mut scans = Vec::new();
     let mut point = floor.start.position;
-    let mut ways_back = 0;
+    let mut tries = 0;
     let mut failure: Option<Box<dyn Error>> = None;
     let (summary, simulation) =
         run_watched(&scenario, &job.config, law, |pilot, simulation, now| {
@@ -263,7 +363,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                                 happens(Happening::Covered(step.passage));
                             }
                             progress.done();
-                            ways_back = 0;
+                            tries = 0;
                         }
                     }
                     Event::Detected(_, at) | Event::HeldUp(_, at) => {
@@ -281,31 +381,41 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                             continue;
                         };
                         let begun = in_world(&floor.start, ahead.start());
-                        let step = progress
-                            .next()
-                            .filter(|_| legs_now.ends.get(leg).is_some_and(Option::is_some));
-                        let back: Vec<Point> = if let Some(step) = step {
+                        let step = progress.next();
+                        let on_step = legs_now.ends.get(leg).is_some_and(Option::is_some);
+                        let from = believed(pilot, floor);
+                        let is_near = (roadmap.graph[progress.at()] - from).norm() < NEAR;
+                        let mut back = Vec::new();
+                        if on_step && let Some(step) = step {
                             happens(Happening::Blocked(step.passage, point));
-                            // Back by the corners that have been passed.
                             let course = roadmap.passage(step.passage).course(step.reversed);
-                            let passed = course
-                                .iter()
-                                .position(|corner| (corner - begun).norm() < THERE)
-                                .unwrap_or_default();
+                            back = way_back(&course, begun, from);
                             progress.blocked();
-                            ways_back = 0;
-                            course[..=passed].iter().rev().copied().collect()
+                            tries = 0;
+                        } else if is_near {
+                            // Straight on to the next passage instead; and if that fails as well, it
+                            // cannot be entered.
+                            tries += 1;
+                            if tries > 1
+                                && let Some(step) = step
+                            {
+                                happens(Happening::Blocked(step.passage, point));
+                                progress.blocked();
+                            }
                         } else {
-                            // What is left of the way back.
-                            ways_back += 1;
-                            let rest = pilot.law_mut().route().iter().zip(&legs_now.ends).skip(leg);
-                            rest.take_while(|(_, end)| end.is_none())
+                            // The rest of the way back once more.
+                            tries += 1;
+                            let rest = pilot.law_mut().route().iter().zip(&legs_now.ends);
+                            back = rest
+                                .skip(leg)
+                                .take_while(|(_, end)| end.is_none())
                                 .map(|(edge, _)| in_world(&floor.start, edge.end()))
-                                .collect()
-                        };
-                        let next = legs(floor, &progress, roadmap, believed(pilot, floor), &back);
+                                .collect();
+                        }
+                        let cuts_corner = !on_step && is_near;
+                        let next = legs(floor, &progress, roadmap, from, &back, cuts_corner);
                         let next = match next {
-                            Ok(Some(next)) if ways_back < WAYS_BACK => next,
+                            Ok(Some(next)) if tries <= TRIES => next,
                             Ok(Some(_)) => {
                                 happens(Happening::Stuck);
                                 return true;
@@ -321,6 +431,35 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                             return true;
                         }
                         legs_now = next;
+                    }
+                }
+            }
+            // After what has happened, which names legs of the route so far.
+            let leg = pilot.law_mut().current();
+            if pilot.law_mut().state() == State::OffEdge
+                && let Some(view) = pilot.latest().and_then(|decision| decision.view)
+            {
+                match rest(&legs_now, leg, view.pose.position) {
+                    Ok(None) => {}
+                    Ok(Some(next)) => {
+                        if legs_now.ends.get(leg) == Some(&Some(true)) {
+                            if let Some(step) = progress.next() {
+                                happens(Happening::Covered(step.passage));
+                            }
+                            progress.done();
+                        }
+                        legs_now = next;
+                        if legs_now.edges.is_empty() {
+                            return true;
+                        }
+                        if let Err(error) = pilot.law_mut().reroute(legs_now.edges.clone()) {
+                            failure = Some(error.into());
+                            return true;
+                        }
+                    }
+                    Err(error) => {
+                        failure = Some(error.into());
+                        return true;
                     }
                 }
             }
