@@ -205,7 +205,7 @@ mod tests {
         assert_eq!(scan.ranges[..4], [None, Some(8000), Some(8000), Some(503)]);
         let mut line = Vec::new();
         write(&mut line, &scan).expect("written");
-        assert_eq!(read(&line[..]).expect("read"), [scan.clone()]);
+        assert_eq!(read(&line[..]).expect("read"), std::slice::from_ref(&scan));
         let metres = scan.metres();
         assert!(metres[0].is_nan() && metres[1].is_infinite() && metres[2].is_infinite());
         assert_eq!(metres[3], 0.503);

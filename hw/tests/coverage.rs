@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 use rustworkx_core::petgraph::graph::{EdgeIndex, NodeIndex, UnGraph};
 use sidestep_hw::coverage::{
-    Floor, Passage, PassageId, Progress, Roadmap, Rules, Step, drive, roadmap, route, voronoi,
+    Floor, Passage, PassageId, Progress, Roadmap, Rules, Step, drive, roadmap, route, trial,
+    voronoi,
 };
 use sidestep_hw::edge::corridor_base;
 use sidestep_sim::geometry::{Point, Vector, direction, heading_of};
@@ -447,4 +448,44 @@ fn twenty_edges_and_five_boxes() {
     let outcome = run.simulation.outcome();
     assert_eq!(run.summary.contacts_while_moving(), 0, "{outcome:?}");
     assert!(!run.scans.is_empty());
+}
+
+/// Boxes at random places of the same floor, away from where passages meet: everything is named as
+/// what it is, and the robot comes home. Where the box leaves 550 to 750 mm, either is right.
+#[test]
+fn boxes_at_random_places() {
+    let mut floor = Floor::parse(CORRIDORS, None).expect("a floor");
+    let roadmap = Roadmap::new(&floor, &Rules::default()).expect("a roadmap");
+    for seed in 0..20 {
+        let trials = trial::boxes(&floor, &roadmap, 5, 0.9, seed);
+        assert_eq!(trials.len(), 5);
+        floor.surprises = trials.iter().map(|trial| trial.surprise).collect();
+        let job = drive::Job {
+            floor: &floor,
+            roadmap: &roadmap,
+            config: corridor_base().expect("a configuration"),
+            edge: sidestep::edge::PAPER,
+            seed,
+            sonar_faults: sidestep_sim::sonar::Faults::default(),
+            time_limit_ms: 3_600_000,
+        };
+        let run = drive::run(&job, |_, _| {}).expect("a run");
+        let report = &run.report;
+        assert_eq!(run.summary.contacts_while_moving(), 0, "seed {seed}");
+        assert!(run.is_home, "seed {seed}: {report}");
+        assert!(report.left.is_empty(), "seed {seed}: {report}");
+        for (i, _) in roadmap.passages.iter().enumerate() {
+            let id = PassageId(i);
+            let trial = trials.iter().find(|trial| trial.passage == id);
+            let free = trial.map_or(f64::INFINITY, |trial| trial.free);
+            let is_blocked = report.blocked.contains_key(&id);
+            let is_reached = is_blocked || report.covered.contains(&id);
+            if is_reached && free < 0.55 {
+                assert!(is_blocked, "seed {seed}: {id}, {free} m are free");
+            }
+            if is_reached && free > 0.75 {
+                assert!(!is_blocked, "seed {seed}: {id}, {free} m are free");
+            }
+        }
+    }
 }

@@ -140,5 +140,5 @@ pub fn is_scan(telegram: &[u8]) -> bool {
         && header / 16_384 < 2
         && (0..=2).contains(&indices)
         && status % 8 < 3
-        && status / 64 % 2 == 0
+        && (status / 64).is_multiple_of(2)
 }
