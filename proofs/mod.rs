@@ -21,6 +21,7 @@ pub mod decide;
 pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;

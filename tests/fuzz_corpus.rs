@@ -21,6 +21,7 @@ const TARGETS: &[(&str, Target)] = &[
     ("controller", targets::controller::run),
     ("decide", targets::decide::run),
     ("edge", targets::edge::run),
+    ("laser", targets::laser::run),
     ("shield", targets::shield::run),
 ];
 

@@ -10,6 +10,7 @@ pub mod bytes;
 pub mod controller;
 pub mod decide;
 pub mod edge;
+pub mod laser;
 pub mod reference;
 pub mod settings;
 pub mod shield;

@@ -188,7 +188,7 @@ pub fn draw_planned(picture: &Picture, plan: &Plan) -> String {
     document.add(scene).add(list).to_string()
 }
 
-fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
+pub(crate) fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
     let stroke = |x1: f64, y1: f64, x2: f64, y2: f64| {
         Line::new()
             .set("x1", x + x1)

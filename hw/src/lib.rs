@@ -8,6 +8,7 @@
 pub mod base;
 pub mod config;
 pub mod decide;
+pub mod coverage;
 pub mod demo;
 pub mod draw;
 pub mod drive;
@@ -15,6 +16,7 @@ pub mod edge;
 pub mod emulate;
 pub mod episodes;
 pub mod faults;
+pub mod laser;
 pub mod log;
 pub mod pilot;
 pub mod replay;

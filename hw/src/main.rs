@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
+use sidestep_hw::coverage;
 use sidestep_hw::decide;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
@@ -45,12 +46,13 @@ enum Command {
     /// people; needs --data), decide (S2's experiment with its decision and a noisy sonar; leaves
     /// timeline.svg too: belief, decision and distance over time), edge (S4: a planned way through
     /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
-    /// and no log).
+    /// and no log), coverage (every edge of a floor, some of them blocked, by S4 with a laser;
+    /// likewise; --data FILE for a floor of your own).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
         scenario: String,
-        /// The ETH recording obsmat.txt, for the scenario hotel.
+        /// The ETH recording obsmat.txt, for the scenario hotel; a floor (TOML), for coverage.
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
         /// Where in the recording to start, seconds.
@@ -288,6 +290,17 @@ fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
         return match touched {
             0 => Ok(ExitCode::SUCCESS),
             _ => Err(format!("the robot touched something {touched} times while it moved").into()),
+        };
+    }
+    if options.scenario == coverage::demo::NAME {
+        let (folder, run) = coverage::demo::run(options, &mut status)?;
+        let picture = folder.join("picture.svg");
+        status.keep(&format!("picture: {}\n", picture.display()));
+        return match run.summary.contacts_while_moving() {
+            0 => Ok(ExitCode::SUCCESS),
+            contacts => {
+                Err(format!("the robot touched something {contacts} times while it moved").into())
+            }
         };
     }
     for scenario in demo::scenarios(options)? {

@@ -15,9 +15,11 @@
 pub mod arcos;
 pub mod avoid;
 pub mod decide;
+pub mod coverage;
 pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;
