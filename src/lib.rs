@@ -23,6 +23,7 @@ pub mod config;
 pub mod controller;
 pub mod escape;
 pub mod failsafe;
+pub mod gesture;
 pub mod kinematics;
 pub mod law;
 pub mod math;
