@@ -1,8 +1,14 @@
 //! What people tell the robot with their arms (S3 section 2).
 //!
-//! A depth camera's program gives [`Skeleton`]s; [`Features::of`] judges one and makes six
+//! A depth camera's program gives [`Skeleton`]s. [`Features::of`] judges one and makes six
 //! numbers of it that depend neither on how tall somebody is nor on where they stand nor on
-//! which way they are turned.
+//! which way they are turned. A [`Model`] says which [`Gesture`] they are, or that they are none.
+//! A [`Recognizer`] follows people from frame to frame: a gesture counts once it has been seen in
+//! several frames in a row, and is lost in the first frame in which it is not.
+//!
+//! The weights are data, written by `cargo run -p sidestep-hw --example train_gestures`.
+
+mod weights;
 
 use crate::math;
 use crate::quantity::{Instant, OutOfRange, in_range};
@@ -122,6 +128,8 @@ impl fmt::Display for Gesture {
 pub enum Rejection {
     /// A joint that is needed is not tracked.
     NotTracked(&'static str),
+    /// Another skeleton of the frame has the same number: whose gesture would it be?
+    NotUnique(u64),
     /// A number of the skeleton is not one of a person who faces the camera.
     OutOfRange(OutOfRange),
     /// The pose is not clearly of one class.
@@ -134,6 +142,7 @@ impl fmt::Display for Rejection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotTracked(joint) => write!(f, "{joint} is not tracked"),
+            Self::NotUnique(id) => write!(f, "two people have the number {id}"),
             Self::OutOfRange(error) => error.fmt(f),
             Self::Ambiguous => f.write_str("the pose is between two gestures"),
             Self::Unlike(gesture) => write!(f, "the pose is none; nearest is {gesture}"),
@@ -162,7 +171,7 @@ const COORDINATE_MAX: f32 = 10.0;
 /// Mean length of the arms, from shoulder to wrist, m: 0.33 of a height from 0.9 m to 2.2 m with
 /// room for noise (Drillis and Contini 1966: upper arm 0.186, forearm 0.146 of the height).
 const ARM: (f32, f32) = (0.25, 0.9);
-/// How much farther apart the shoulders are across the camera's view than the least, m.
+/// How far shoulders are apart, m.
 const SHOULDERS: (f32, f32) = (0.08, 0.8);
 /// Tangent of the farthest that somebody may be turned away: 55°, which is 40° and what noise of
 /// the shoulders can add.
@@ -228,24 +237,30 @@ impl Features {
         let right = distance(right_shoulder, right_elbow) + distance(right_elbow, right_wrist);
         let arm = in_range("arm length", 0.5 * (left + right), ARM.0, ARM.1, "m")?;
 
-        // Whoever faces the camera has their right shoulder on its left.
-        let across = right_shoulder.x - left_shoulder.x;
-        let across = in_range("shoulder width", across, SHOULDERS.0, SHOULDERS.1, "m")?;
-        let away = right_shoulder.z - left_shoulder.z;
-        let limit = TURN_TANGENT * across;
+        // Which way somebody faces is across their shoulders; where the camera is, is where they
+        // should face.
+        let across = right_shoulder - left_shoulder;
+        let width = math::sqrt(across.x * across.x + across.z * across.z);
+        let width = in_range("shoulder width", width, SHOULDERS.0, SHOULDERS.1, "m")?;
+        let ahead = across.x * neck.z - across.z * neck.x;
+        let aside = across.x * neck.x + across.z * neck.z;
+        let tangent = if ahead > 0.0 {
+            aside / ahead
+        } else {
+            f32::INFINITY
+        };
         in_range(
-            "difference of the shoulders' depth",
-            away,
-            -limit,
-            limit,
-            "m",
+            "tangent of the turn away",
+            tangent,
+            -TURN_TANGENT,
+            TURN_TANGENT,
+            "",
         )?;
 
         // How far the neck is ahead of the shoulders, the way that the person faces.
         let middle = 0.5 * (left_shoulder + right_shoulder);
         let offset = neck - middle;
-        let width = math::sqrt(across * across + away * away);
-        let advance = (offset.x * away - offset.z * across) / width;
+        let advance = (offset.x * across.z - offset.z * across.x) / width;
 
         Ok(Self::new([
             (left_elbow.y - neck.y) / arm,
@@ -270,4 +285,503 @@ fn judged(joint: &'static str, position: Option<Point>) -> Result<Point, Rejecti
 fn distance(from: Point, to: Point) -> f32 {
     let way = to - from;
     math::sqrt(way.dot(&way))
+}
+
+/// Pairs of classes.
+const PAIRS: usize = Gesture::COUNT * (Gesture::COUNT - 1) / 2;
+/// A weight for each feature, and the constant after them.
+pub type Weights = [f32; Features::COUNT + 1];
+/// The largest size of a weight: with it and features within their limit every sum is finite.
+const WEIGHT_MAX: f32 = 1e6;
+
+/// A weighted sum of the features and the constant. At most `WEIGHT_MAX·(6·LIMIT + 1)` in size.
+fn weighted(weights: &Weights, features: &Features) -> f32 {
+    let mut sum = weights[Features::COUNT];
+    let mut i = 0;
+    while i < Features::COUNT {
+        sum += weights[i] * features.0[i];
+        i += 1;
+    }
+    sum
+}
+
+/// Refuses weights with which a sum might not be finite.
+fn check(weights: &[f32]) -> Result<(), OutOfRange> {
+    for weight in weights {
+        in_range("weight", *weight, -WEIGHT_MAX, WEIGHT_MAX, "")?;
+    }
+    Ok(())
+}
+
+/// What a classifier makes of six features: the nearest class, and how clearly it is that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// The class.
+    pub gesture: Gesture,
+    /// How clearly; its unit is that of [`Model`]'s threshold. Finite.
+    pub margin: f32,
+}
+
+/// A linear support vector machine for seven classes: one plane for each pair of classes (S3's
+/// "21 support vectors").
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SupportVectorMachine {
+    /// Pairs (0, 1), (0, 2) … (5, 6); positive is the first.
+    planes: [Weights; PAIRS],
+}
+
+impl SupportVectorMachine {
+    /// A machine with these planes, for the pairs (0, 1), (0, 2) … (5, 6) of [`Gesture::index`];
+    /// the side of the first is positive.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a weight is not finite or beyond ±10⁶.
+    pub fn new(planes: [Weights; PAIRS]) -> Result<Self, OutOfRange> {
+        for plane in &planes {
+            check(plane)?;
+        }
+        Ok(Self { planes })
+    }
+
+    /// The class that wins most of its six duels, the first of those that win as many. The margin
+    /// is its closest duel: 1 is where the nearest training samples lie, negative is a duel lost.
+    #[must_use]
+    pub fn nearest(&self, features: &Features) -> Nearest {
+        let mut won = [0_u8; Gesture::COUNT];
+        let mut closest = [f32::MAX; Gesture::COUNT];
+        let mut pair = 0;
+        let mut first = 0;
+        while first < Gesture::COUNT {
+            let mut second = first + 1;
+            while second < Gesture::COUNT {
+                let score = weighted(&self.planes[pair], features);
+                if score >= 0.0 {
+                    won[first] += 1;
+                } else {
+                    won[second] += 1;
+                }
+                closest[first] = closest[first].min(score);
+                closest[second] = closest[second].min(-score);
+                second += 1;
+                pair += 1;
+            }
+            first += 1;
+        }
+        let mut best = 0;
+        let mut i = 1;
+        while i < Gesture::COUNT {
+            if won[i] > won[best] {
+                best = i;
+            }
+            i += 1;
+        }
+        Nearest {
+            gesture: Gesture::ALL[best],
+            margin: closest[best],
+        }
+    }
+}
+
+/// Hidden neurons of the net, as S3 chooses.
+pub const HIDDEN: usize = 6;
+/// Output neurons: a binary code of up to eight classes.
+pub const OUTPUTS: usize = 3;
+
+/// A net with a layer of [`HIDDEN`] neurons and [`OUTPUTS`] output neurons that spell the class's
+/// [`Gesture::index`] in binary, the least bit first.
+///
+/// A neuron of the hidden layer gives x/(1 + |x|) of its sum x. An output neuron's bit is 1 where
+/// its sum is positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeuralNetwork {
+    hidden: [Weights; HIDDEN],
+    output: [[f32; HIDDEN + 1]; OUTPUTS],
+}
+
+impl NeuralNetwork {
+    /// A net with these weights, for each neuron those of its inputs and then the constant.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a weight is not finite or beyond ±10⁶.
+    pub fn new(
+        hidden: [Weights; HIDDEN],
+        output: [[f32; HIDDEN + 1]; OUTPUTS],
+    ) -> Result<Self, OutOfRange> {
+        for neuron in &hidden {
+            check(neuron)?;
+        }
+        for neuron in &output {
+            check(neuron)?;
+        }
+        Ok(Self { hidden, output })
+    }
+
+    /// The sums of the output neurons. Finite.
+    #[must_use]
+    pub fn outputs(&self, features: &Features) -> [f32; OUTPUTS] {
+        let mut hidden = [0.0; HIDDEN];
+        let mut i = 0;
+        while i < HIDDEN {
+            hidden[i] = squashed(weighted(&self.hidden[i], features));
+            i += 1;
+        }
+        let mut outputs = [0.0; OUTPUTS];
+        let mut o = 0;
+        while o < OUTPUTS {
+            let mut sum = self.output[o][HIDDEN];
+            let mut i = 0;
+            while i < HIDDEN {
+                sum += self.output[o][i] * hidden[i];
+                i += 1;
+            }
+            outputs[o] = sum;
+            o += 1;
+        }
+        outputs
+    }
+
+    /// The class that the outputs spell, if it is one of the seven. The margin is the smallest of
+    /// their sizes.
+    #[must_use]
+    pub fn nearest(&self, features: &Features) -> Option<Nearest> {
+        let outputs = self.outputs(features);
+        let mut code = 0;
+        let mut margin = f32::MAX;
+        let mut o = 0;
+        while o < OUTPUTS {
+            if outputs[o] > 0.0 {
+                code |= 1 << o;
+            }
+            margin = margin.min(outputs[o].abs());
+            o += 1;
+        }
+        let gesture = *Gesture::ALL.get(code)?;
+        Some(Nearest { gesture, margin })
+    }
+}
+
+/// x/(1 + |x|), in [−1, 1] for every finite x: the activation of the hidden neurons.
+#[must_use]
+pub fn squashed(x: f32) -> f32 {
+    x / (1.0 + x.abs())
+}
+
+/// Least and greatest of a feature.
+pub type Range = (f32, f32);
+
+/// The box of features in which a class lies, for each class.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Envelope([[Range; Features::COUNT]; Gesture::COUNT]);
+
+impl Envelope {
+    /// The boxes, by [`Gesture::index`].
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a bound is not finite or beyond ±[`Features::LIMIT`], or if a greatest is
+    /// below its least.
+    pub fn new(boxes: [[Range; Features::COUNT]; Gesture::COUNT]) -> Result<Self, OutOfRange> {
+        for ranges in &boxes {
+            for (name, (least, greatest)) in Features::NAMES.iter().zip(ranges) {
+                in_range(
+                    name,
+                    *least,
+                    -Features::LIMIT,
+                    Features::LIMIT,
+                    "arm lengths",
+                )?;
+                in_range(name, *greatest, *least, Features::LIMIT, "arm lengths")?;
+            }
+        }
+        Ok(Self(boxes))
+    }
+
+    /// Whether the features lie in the class's box.
+    #[must_use]
+    pub fn holds(&self, gesture: Gesture, features: &Features) -> bool {
+        let ranges = &self.0[gesture.index()];
+        let mut i = 0;
+        while i < Features::COUNT {
+            let (least, greatest) = ranges[i];
+            if !(least <= features.0[i] && features.0[i] <= greatest) {
+                return false;
+            }
+            i += 1;
+        }
+        true
+    }
+}
+
+/// What tells the classes apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Classifier {
+    /// S3's linear support vector machine.
+    SupportVectorMachine(SupportVectorMachine),
+    /// S3's net, the one that it chooses.
+    NeuralNetwork(NeuralNetwork),
+}
+
+/// A classifier with what makes it refuse a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    classifier: Classifier,
+    margin: f32,
+    envelope: Envelope,
+}
+
+impl Model {
+    /// The linear support vector machine as trained.
+    pub const SUPPORT_VECTOR_MACHINE: Self = Self {
+        classifier: Classifier::SupportVectorMachine(weights::SUPPORT_VECTOR_MACHINE),
+        margin: Self::SVM_MARGIN,
+        envelope: weights::ENVELOPE,
+    };
+    /// The net as trained.
+    pub const NEURAL_NETWORK: Self = Self {
+        classifier: Classifier::NeuralNetwork(weights::NEURAL_NETWORK),
+        margin: Self::NET_MARGIN,
+        envelope: weights::ENVELOPE,
+    };
+    /// The winner of a support vector machine has to win every duel by half of what separates the
+    /// classes' nearest samples.
+    pub const SVM_MARGIN: f32 = 0.5;
+    /// Each output of the net has to be this far from undecided: as an activation ±½.
+    pub const NET_MARGIN: f32 = 1.0;
+
+    /// A classifier, the least margin by which a class has to be the one, and the classes' boxes.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if the margin is not in [0, 10⁶].
+    pub fn new(
+        classifier: Classifier,
+        margin: f32,
+        envelope: Envelope,
+    ) -> Result<Self, OutOfRange> {
+        Ok(Self {
+            classifier,
+            margin: in_range("margin", margin, 0.0, WEIGHT_MAX, "")?,
+            envelope,
+        })
+    }
+
+    /// The class nearest to the features, whether or not they are of it.
+    #[must_use]
+    pub fn nearest(&self, features: &Features) -> Option<Nearest> {
+        match &self.classifier {
+            Classifier::SupportVectorMachine(machine) => Some(machine.nearest(features)),
+            Classifier::NeuralNetwork(net) => net.nearest(features),
+        }
+    }
+
+    /// The gesture that the features are.
+    ///
+    /// # Errors
+    /// [`Rejection::Ambiguous`] if no class is the one by the least margin, [`Rejection::Unlike`]
+    /// if the features lie outside the box of the one that is.
+    pub fn classify(&self, features: &Features) -> Result<Gesture, Rejection> {
+        match self.nearest(features) {
+            Some(Nearest { gesture, margin }) if margin >= self.margin => {
+                if self.envelope.holds(gesture, features) {
+                    Ok(gesture)
+                } else {
+                    Err(Rejection::Unlike(gesture))
+                }
+            }
+            _ => Err(Rejection::Ambiguous),
+        }
+    }
+
+    /// The gesture that a skeleton shows.
+    ///
+    /// # Errors
+    /// As [`Features::of`] and [`Self::classify`].
+    pub fn recognize(&self, skeleton: &Skeleton) -> Result<Gesture, Rejection> {
+        self.classify(&Features::of(skeleton)?)
+    }
+
+    /// The classes' boxes.
+    #[must_use]
+    pub const fn envelope(&self) -> &Envelope {
+        &self.envelope
+    }
+}
+
+impl Default for Model {
+    /// The net, as S3 has it.
+    fn default() -> Self {
+        Self::NEURAL_NETWORK
+    }
+}
+
+/// How often in a row a pose has been seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Debounce {
+    /// The pose of the last frame, if it was one.
+    pub pose: Option<Gesture>,
+    /// In how many frames in a row it has been seen.
+    pub frames: u32,
+}
+
+impl Debounce {
+    /// After one more frame that shows `pose`.
+    #[must_use]
+    pub fn after(self, pose: Option<Gesture>) -> Self {
+        let frames = match pose {
+            None => 0,
+            Some(_) if pose == self.pose => self.frames.saturating_add(1),
+            Some(_) => 1,
+        };
+        Self { pose, frames }
+    }
+
+    /// The gesture that counts, if so many frames are asked for.
+    #[must_use]
+    pub fn gesture(self, frames: u32) -> Option<Gesture> {
+        if self.frames >= frames {
+            self.pose
+        } else {
+            None
+        }
+    }
+}
+
+/// How a [`Recognizer`] follows people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Frames in a row in which a gesture has to be seen before it counts, 1 to 60.
+    pub frames: u32,
+    /// Frames farther apart than this are not "in a row", ms, 20 to 1000.
+    pub frame_age_max: u64,
+}
+
+impl Default for Settings {
+    /// A sixth of a second of a camera with 30 frames a second, of which a few may get lost.
+    fn default() -> Self {
+        Self {
+            frames: 5,
+            frame_age_max: 200,
+        }
+    }
+}
+
+/// One person of a frame, as recognised.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Person {
+    /// The number that the camera's program gave them.
+    pub id: u64,
+    /// What this frame alone shows.
+    pub pose: Result<Gesture, Rejection>,
+    /// What counts: a pose that has been shown for long enough and is shown in this frame.
+    pub gesture: Option<Gesture>,
+}
+
+/// Follows the people of a camera's frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recognizer {
+    model: Model,
+    settings: Settings,
+    people: [Option<(u64, Debounce)>; PEOPLE_MAX],
+    taken_at: Option<Instant>,
+}
+
+impl Recognizer {
+    /// A recogniser that has seen nobody yet.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a setting is out of its range.
+    pub fn new(model: Model, settings: Settings) -> Result<Self, OutOfRange> {
+        in_range(
+            "gesture frames",
+            settings.frames as f32,
+            1.0,
+            60.0,
+            "frames",
+        )?;
+        in_range(
+            "gesture frame age",
+            settings.frame_age_max as f32,
+            20.0,
+            1000.0,
+            "ms",
+        )?;
+        Ok(Self {
+            model,
+            settings,
+            people: [None; PEOPLE_MAX],
+            taken_at: None,
+        })
+    }
+
+    /// Looks at the next frame. People are in the places in which the frame has them.
+    ///
+    /// A frame that is not later than the one before, or too much later, begins anew: no gesture
+    /// counts until it has been seen often enough again.
+    pub fn update(&mut self, frame: &Frame) -> [Option<Person>; PEOPLE_MAX] {
+        let in_a_row = match self.taken_at {
+            Some(before) => frame
+                .taken_at
+                .since(before)
+                .is_some_and(|gap| gap > 0 && gap <= self.settings.frame_age_max),
+            None => false,
+        };
+        let mut people = [None; PEOPLE_MAX];
+        let mut seen = [None; PEOPLE_MAX];
+        let mut i = 0;
+        while i < PEOPLE_MAX {
+            if let Some(skeleton) = &frame.people[i] {
+                let pose = if alone(&frame.people, i) {
+                    self.model.recognize(skeleton)
+                } else {
+                    Err(Rejection::NotUnique(skeleton.id))
+                };
+                let before = if in_a_row {
+                    self.before(skeleton.id)
+                } else {
+                    Debounce::default()
+                };
+                let now = before.after(pose.ok());
+                people[i] = Some((skeleton.id, now));
+                seen[i] = Some(Person {
+                    id: skeleton.id,
+                    pose,
+                    gesture: now.gesture(self.settings.frames),
+                });
+            }
+            i += 1;
+        }
+        self.people = people;
+        self.taken_at = Some(frame.taken_at);
+        seen
+    }
+
+    /// The settings.
+    #[must_use]
+    pub const fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    fn before(&self, id: u64) -> Debounce {
+        let mut i = 0;
+        while i < PEOPLE_MAX {
+            if let Some((other, debounce)) = self.people[i]
+                && other == id
+            {
+                return debounce;
+            }
+            i += 1;
+        }
+        Debounce::default()
+    }
+}
+
+/// Whether nobody else in the frame has the number of the person in place `at`.
+fn alone(people: &[Option<Skeleton>; PEOPLE_MAX], at: usize) -> bool {
+    let id = people[at].map(|person| person.id);
+    let mut i = 0;
+    while i < PEOPLE_MAX {
+        if i != at && people[i].map(|person| person.id) == id {
+            return false;
+        }
+        i += 1;
+    }
+    true
 }

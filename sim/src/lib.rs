@@ -40,6 +40,7 @@ pub mod person;
 pub mod robot;
 pub mod scenario;
 pub mod simulation;
+pub mod skeleton;
 pub mod sonar;
 mod table;
 pub mod truth;
