@@ -158,13 +158,19 @@ impl From<OutOfRange> for Rejection {
     }
 }
 
-/// Six numbers of a skeleton (S3 section 2): the height of the elbows and the wrists over the
-/// neck, and the height and the advance of the neck over the middle of the shoulders; all in
-/// lengths of an arm. The same for any size, any place and any turn about the vertical.
+/// What is looked at in a skeleton, in lengths of an arm: the same for any size, any place and any
+/// turn about the vertical. Each number is finite and within [`Features::LIMIT`].
 ///
-/// Each is finite and within [`Features::LIMIT`].
+/// Six are S3's (section 2), and what a classifier gets: the height of the elbows and the wrists
+/// over the neck, and the height and the advance of the neck over the middle of the shoulders.
+/// Heights alone do not tell a bent arm from a straight one, nor an arm held out to the side from
+/// one held out ahead; four more numbers do, and serve to reject: how far each wrist is from its
+/// shoulder, and how far out to its own side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Features([f32; Features::COUNT]);
+pub struct Features {
+    six: [f32; Features::COUNT],
+    arms: [f32; Features::ARMS],
+}
 
 /// The largest size of a coordinate, m.
 const COORDINATE_MAX: f32 = 10.0;
@@ -178,11 +184,13 @@ const SHOULDERS: (f32, f32) = (0.08, 0.8);
 const TURN_TANGENT: f32 = 1.43;
 
 impl Features {
-    /// How many there are.
+    /// How many a classifier gets.
     pub const COUNT: usize = 6;
+    /// How many more there are.
+    pub const ARMS: usize = 4;
     /// None is larger than this in size: nobody's wrist is three arms away from the neck.
     pub const LIMIT: f32 = 3.0;
-    /// Their names, in order.
+    /// Names of the six, in order.
     pub const NAMES: [&'static str; Self::COUNT] = [
         "left elbow height",
         "right elbow height",
@@ -191,30 +199,42 @@ impl Features {
         "neck height",
         "neck advance",
     ];
+    /// Names of the four, in order.
+    pub const ARM_NAMES: [&'static str; Self::ARMS] = [
+        "left wrist from shoulder",
+        "right wrist from shoulder",
+        "left wrist outward",
+        "right wrist outward",
+    ];
 
-    /// Checks six bare numbers.
+    /// Checks bare numbers: the six and the four.
     ///
     /// # Errors
     /// [`OutOfRange`] if one is not finite or beyond [`Self::LIMIT`].
-    pub fn new(values: [f32; Self::COUNT]) -> Result<Self, OutOfRange> {
+    pub fn new(six: [f32; Self::COUNT], arms: [f32; Self::ARMS]) -> Result<Self, OutOfRange> {
         let mut i = 0;
         while i < Self::COUNT {
-            in_range(
-                Self::NAMES[i],
-                values[i],
-                -Self::LIMIT,
-                Self::LIMIT,
-                "arm lengths",
-            )?;
+            within(Self::NAMES[i], six[i])?;
             i += 1;
         }
-        Ok(Self(values))
+        let mut i = 0;
+        while i < Self::ARMS {
+            within(Self::ARM_NAMES[i], arms[i])?;
+            i += 1;
+        }
+        Ok(Self { six, arms })
     }
 
-    /// The bare numbers.
+    /// The six that a classifier gets.
     #[must_use]
-    pub const fn get(self) -> [f32; Self::COUNT] {
-        self.0
+    pub const fn six(&self) -> &[f32; Self::COUNT] {
+        &self.six
+    }
+
+    /// The four that serve to reject.
+    #[must_use]
+    pub const fn arms(&self) -> &[f32; Self::ARMS] {
+        &self.arms
     }
 
     /// The features of a skeleton.
@@ -262,15 +282,37 @@ impl Features {
         let offset = neck - middle;
         let advance = (offset.x * across.z - offset.z * across.x) / width;
 
-        Ok(Self::new([
-            (left_elbow.y - neck.y) / arm,
-            (right_elbow.y - neck.y) / arm,
-            (left_wrist.y - neck.y) / arm,
-            (right_wrist.y - neck.y) / arm,
-            offset.y / arm,
-            advance / arm,
-        ])?)
+        let outward = |from: Point, to: Point| {
+            ((to.x - from.x) * across.x + (to.z - from.z) * across.z) / width
+        };
+        Ok(Self::new(
+            [
+                (left_elbow.y - neck.y) / arm,
+                (right_elbow.y - neck.y) / arm,
+                (left_wrist.y - neck.y) / arm,
+                (right_wrist.y - neck.y) / arm,
+                offset.y / arm,
+                advance / arm,
+            ],
+            [
+                distance(left_shoulder, left_wrist) / arm,
+                distance(right_shoulder, right_wrist) / arm,
+                -outward(left_shoulder, left_wrist) / arm,
+                outward(right_shoulder, right_wrist) / arm,
+            ],
+        )?)
     }
+}
+
+/// Refuses a feature that nobody can have.
+fn within(name: &'static str, value: f32) -> Result<f32, OutOfRange> {
+    in_range(
+        name,
+        value,
+        -Features::LIMIT,
+        Features::LIMIT,
+        "arm lengths",
+    )
 }
 
 /// The position of a joint that is tracked.
@@ -288,7 +330,7 @@ fn distance(from: Point, to: Point) -> f32 {
 }
 
 /// Pairs of classes.
-const PAIRS: usize = Gesture::COUNT * (Gesture::COUNT - 1) / 2;
+pub const PAIRS: usize = Gesture::COUNT * (Gesture::COUNT - 1) / 2;
 /// A weight for each feature, and the constant after them.
 pub type Weights = [f32; Features::COUNT + 1];
 /// The largest size of a weight: with it and features within their limit every sum is finite.
@@ -299,7 +341,7 @@ fn weighted(weights: &Weights, features: &Features) -> f32 {
     let mut sum = weights[Features::COUNT];
     let mut i = 0;
     while i < Features::COUNT {
-        sum += weights[i] * features.0[i];
+        sum += weights[i] * features.six[i];
         i += 1;
     }
     sum
@@ -341,6 +383,12 @@ impl SupportVectorMachine {
             check(plane)?;
         }
         Ok(Self { planes })
+    }
+
+    /// The planes, in the order of [`Self::new`].
+    #[must_use]
+    pub const fn planes(&self) -> &[Weights; PAIRS] {
+        &self.planes
     }
 
     /// The class that wins most of its six duels, the first of those that win as many. The margin
@@ -469,9 +517,18 @@ pub fn squashed(x: f32) -> f32 {
 /// Least and greatest of a feature.
 pub type Range = (f32, f32);
 
-/// The box of features in which a class lies, for each class.
+/// Where a class lies: least and greatest of each feature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Envelope([[Range; Features::COUNT]; Gesture::COUNT]);
+pub struct Bounds {
+    /// Of S3's six.
+    pub six: [Range; Features::COUNT],
+    /// Of the four more.
+    pub arms: [Range; Features::ARMS],
+}
+
+/// The box of features in which each class lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Envelope([Bounds; Gesture::COUNT]);
 
 impl Envelope {
     /// The boxes, by [`Gesture::index`].
@@ -479,36 +536,48 @@ impl Envelope {
     /// # Errors
     /// [`OutOfRange`] if a bound is not finite or beyond ±[`Features::LIMIT`], or if a greatest is
     /// below its least.
-    pub fn new(boxes: [[Range; Features::COUNT]; Gesture::COUNT]) -> Result<Self, OutOfRange> {
-        for ranges in &boxes {
-            for (name, (least, greatest)) in Features::NAMES.iter().zip(ranges) {
-                in_range(
-                    name,
-                    *least,
-                    -Features::LIMIT,
-                    Features::LIMIT,
-                    "arm lengths",
-                )?;
-                in_range(name, *greatest, *least, Features::LIMIT, "arm lengths")?;
+    pub fn new(boxes: [Bounds; Gesture::COUNT]) -> Result<Self, OutOfRange> {
+        for bounds in &boxes {
+            let six = Features::NAMES.iter().zip(&bounds.six);
+            let arms = Features::ARM_NAMES.iter().zip(&bounds.arms);
+            for (name, (least, greatest)) in six.chain(arms) {
+                let least = within(name, *least)?;
+                in_range(name, *greatest, least, Features::LIMIT, "arm lengths")?;
             }
         }
         Ok(Self(boxes))
     }
 
-    /// Whether the features lie in the class's box.
+    /// Whether the features lie in the class's box, its faces included.
     #[must_use]
     pub fn holds(&self, gesture: Gesture, features: &Features) -> bool {
-        let ranges = &self.0[gesture.index()];
+        let bounds = &self.0[gesture.index()];
         let mut i = 0;
         while i < Features::COUNT {
-            let (least, greatest) = ranges[i];
-            if !(least <= features.0[i] && features.0[i] <= greatest) {
+            if !between(bounds.six[i], features.six[i]) {
+                return false;
+            }
+            i += 1;
+        }
+        let mut i = 0;
+        while i < Features::ARMS {
+            if !between(bounds.arms[i], features.arms[i]) {
                 return false;
             }
             i += 1;
         }
         true
     }
+
+    /// The boxes, by [`Gesture::index`].
+    #[must_use]
+    pub const fn bounds(&self) -> &[Bounds; Gesture::COUNT] {
+        &self.0
+    }
+}
+
+fn between((least, greatest): Range, value: f32) -> bool {
+    least <= value && value <= greatest
 }
 
 /// What tells the classes apart.

@@ -71,7 +71,7 @@ const UP: Arm = Arm::degrees((172.0, 90.0), (176.0, 90.0));
 /// Upper arm out to the side, hand up.
 const HAND_UP: Arm = Arm::degrees((88.0, 70.0), (168.0, 60.0));
 /// Elbow down, hand at the shoulder.
-const BECKONING: Arm = Arm::degrees((15.0, 60.0), (140.0, 10.0));
+const HAND_AT_SHOULDER: Arm = Arm::degrees((20.0, 60.0), (162.0, 20.0));
 
 /// What both arms do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +91,7 @@ impl Pose {
             Gesture::Stop => (HAND_UP, HAND_UP),
             Gesture::Right => (HANGING, OUT),
             Gesture::Left => (OUT, HANGING),
-            Gesture::Forward => (BECKONING, BECKONING),
+            Gesture::Forward => (HAND_AT_SHOULDER, HAND_AT_SHOULDER),
             Gesture::Backward => (AHEAD, AHEAD),
             Gesture::MasterSelect => (HANGING, UP),
         };
@@ -158,10 +158,9 @@ impl Pose {
             "reaching up with both hands ahead",
             both(Arm::degrees((130.0, 10.0), (140.0, 10.0))),
         ),
-        (
-            "one hand at the shoulder",
-            right(Arm::degrees((15.0, 60.0), (140.0, 10.0))),
-        ),
+        ("one hand at the shoulder", right(HAND_AT_SHOULDER)),
+        ("pointing ahead", right(AHEAD)),
+        ("arms out to both sides", both(OUT)),
     ];
 
     /// Between two poses: `share` 0 is the first, 1 the second.
