@@ -24,6 +24,7 @@ pub mod controller;
 pub mod escape;
 pub mod failsafe;
 pub mod gesture;
+pub mod interact;
 pub mod kinematics;
 pub mod law;
 pub mod math;
@@ -34,6 +35,7 @@ pub mod quantity;
 pub mod ring;
 pub mod shield;
 pub mod track;
+pub mod valley;
 pub mod view;
 
 #[cfg(kani)]

@@ -422,6 +422,11 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
         self.latest.as_ref()
     }
 
+    /// The law, to tell it what no packet holds: a laser scan, another route.
+    pub const fn law_mut(&mut self) -> &mut L {
+        self.controller.law_mut()
+    }
+
     /// What the run has come to.
     pub const fn tally(&self) -> &Tally {
         &self.tally

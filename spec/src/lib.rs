@@ -15,8 +15,10 @@
 pub mod arcos;
 pub mod avoid;
 pub mod failsafe;
+pub mod interact;
 pub mod kinematics;
 pub mod math;
 pub mod monitor;
 pub mod shield;
+pub mod valley;
 pub mod view;
