@@ -102,6 +102,36 @@ impl Gesture {
         self as usize
     }
 
+    /// Its code of three bits, which the net's outputs spell: 1 the right elbow is raised, 2 the left
+    /// elbow is, 4 the right forearm points up. Each is a plane in the space of features.
+    #[must_use]
+    pub const fn code(self) -> usize {
+        match self {
+            Self::Rest => 0,
+            Self::Right => 1,
+            Self::Left => 2,
+            Self::Backward => 3,
+            Self::Forward => 4,
+            Self::MasterSelect => 5,
+            Self::Stop => 7,
+        }
+    }
+
+    /// The gesture with this code, if one has it.
+    #[must_use]
+    pub const fn spelled(code: usize) -> Option<Self> {
+        match code {
+            0 => Some(Self::Rest),
+            1 => Some(Self::Right),
+            2 => Some(Self::Left),
+            3 => Some(Self::Backward),
+            4 => Some(Self::Forward),
+            5 => Some(Self::MasterSelect),
+            7 => Some(Self::Stop),
+            _ => None,
+        }
+    }
+
     /// In words.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -336,8 +366,9 @@ pub type Weights = [f32; Features::COUNT + 1];
 /// The largest size of a weight: with it and features within their limit every sum is finite.
 const WEIGHT_MAX: f32 = 1e6;
 
-/// A weighted sum of the features and the constant. At most `WEIGHT_MAX·(6·LIMIT + 1)` in size.
-fn weighted(weights: &Weights, features: &Features) -> f32 {
+/// A weighted sum of the six features, and the constant. Finite for weights up to ±10⁶.
+#[must_use]
+pub fn weighted_sum(weights: &Weights, features: &Features) -> f32 {
     let mut sum = weights[Features::COUNT];
     let mut i = 0;
     while i < Features::COUNT {
@@ -391,42 +422,61 @@ impl SupportVectorMachine {
         &self.planes
     }
 
-    /// The class that wins most of its six duels, the first of those that win as many. The margin
-    /// is its closest duel: 1 is where the nearest training samples lie, negative is a duel lost.
+    /// The scores of the duels, in the order of the planes. Finite.
+    #[must_use]
+    pub fn scores(&self, features: &Features) -> [f32; PAIRS] {
+        let mut scores = [0.0; PAIRS];
+        let mut pair = 0;
+        while pair < PAIRS {
+            scores[pair] = weighted_sum(&self.planes[pair], features);
+            pair += 1;
+        }
+        scores
+    }
+
+    /// The class nearest to the features; its margin is its closest duel, where 1 is how clearly
+    /// the nearest training samples win and negative is a duel lost.
     #[must_use]
     pub fn nearest(&self, features: &Features) -> Nearest {
-        let mut won = [0_u8; Gesture::COUNT];
-        let mut closest = [f32::MAX; Gesture::COUNT];
-        let mut pair = 0;
-        let mut first = 0;
-        while first < Gesture::COUNT {
-            let mut second = first + 1;
-            while second < Gesture::COUNT {
-                let score = weighted(&self.planes[pair], features);
-                if score >= 0.0 {
-                    won[first] += 1;
-                } else {
-                    won[second] += 1;
-                }
-                closest[first] = closest[first].min(score);
-                closest[second] = closest[second].min(-score);
-                second += 1;
-                pair += 1;
+        winner(&self.scores(features))
+    }
+}
+
+/// The class that wins most of its six duels, the first of those that win as many, by its closest
+/// duel. Scores are those of the pairs (0, 1), (0, 2) … (5, 6); positive is the first's victory.
+#[must_use]
+pub fn winner(scores: &[f32; PAIRS]) -> Nearest {
+    let mut won = [0_u8; Gesture::COUNT];
+    let mut closest = [f32::MAX; Gesture::COUNT];
+    let mut pair = 0;
+    let mut first = 0;
+    while first < Gesture::COUNT {
+        let mut second = first + 1;
+        while second < Gesture::COUNT {
+            let score = scores[pair];
+            if score >= 0.0 {
+                won[first] += 1;
+            } else {
+                won[second] += 1;
             }
-            first += 1;
+            closest[first] = closest[first].min(score);
+            closest[second] = closest[second].min(-score);
+            second += 1;
+            pair += 1;
         }
-        let mut best = 0;
-        let mut i = 1;
-        while i < Gesture::COUNT {
-            if won[i] > won[best] {
-                best = i;
-            }
-            i += 1;
+        first += 1;
+    }
+    let mut best = 0;
+    let mut i = 1;
+    while i < Gesture::COUNT {
+        if won[i] > won[best] {
+            best = i;
         }
-        Nearest {
-            gesture: Gesture::ALL[best],
-            margin: closest[best],
-        }
+        i += 1;
+    }
+    Nearest {
+        gesture: Gesture::ALL[best],
+        margin: closest[best],
     }
 }
 
@@ -436,7 +486,7 @@ pub const HIDDEN: usize = 6;
 pub const OUTPUTS: usize = 3;
 
 /// A net with a layer of [`HIDDEN`] neurons and [`OUTPUTS`] output neurons that spell the class's
-/// [`Gesture::index`] in binary, the least bit first.
+/// [`Gesture::code`], the least bit first.
 ///
 /// A neuron of the hidden layer gives x/(1 + |x|) of its sum x. An output neuron's bit is 1 where
 /// its sum is positive.
@@ -464,13 +514,19 @@ impl NeuralNetwork {
         Ok(Self { hidden, output })
     }
 
+    /// The weights of the hidden and the output neurons, as in [`Self::new`].
+    #[must_use]
+    pub const fn weights(&self) -> (&[Weights; HIDDEN], &[[f32; HIDDEN + 1]; OUTPUTS]) {
+        (&self.hidden, &self.output)
+    }
+
     /// The sums of the output neurons. Finite.
     #[must_use]
     pub fn outputs(&self, features: &Features) -> [f32; OUTPUTS] {
         let mut hidden = [0.0; HIDDEN];
         let mut i = 0;
         while i < HIDDEN {
-            hidden[i] = squashed(weighted(&self.hidden[i], features));
+            hidden[i] = squashed(weighted_sum(&self.hidden[i], features));
             i += 1;
         }
         let mut outputs = [0.0; OUTPUTS];
@@ -488,24 +544,32 @@ impl NeuralNetwork {
         outputs
     }
 
-    /// The class that the outputs spell, if it is one of the seven. The margin is the smallest of
-    /// their sizes.
+    /// The class that the outputs spell, if any.
     #[must_use]
     pub fn nearest(&self, features: &Features) -> Option<Nearest> {
-        let outputs = self.outputs(features);
-        let mut code = 0;
-        let mut margin = f32::MAX;
-        let mut o = 0;
-        while o < OUTPUTS {
-            if outputs[o] > 0.0 {
-                code |= 1 << o;
-            }
-            margin = margin.min(outputs[o].abs());
-            o += 1;
-        }
-        let gesture = *Gesture::ALL.get(code)?;
-        Some(Nearest { gesture, margin })
+        spelled_by(&self.outputs(features))
     }
+}
+
+/// The class that the sums of the output neurons spell, if it is one of the seven, by the smallest
+/// of their sizes.
+#[must_use]
+pub fn spelled_by(outputs: &[f32; OUTPUTS]) -> Option<Nearest> {
+    let mut code = 0;
+    let mut margin = f32::MAX;
+    let mut bit = 0;
+    while bit < OUTPUTS {
+        if !outputs[bit].is_finite() {
+            return None;
+        }
+        if outputs[bit] > 0.0 {
+            code |= 1 << bit;
+        }
+        margin = margin.min(outputs[bit].abs());
+        bit += 1;
+    }
+    let gesture = Gesture::spelled(code)?;
+    Some(Nearest { gesture, margin })
 }
 
 /// x/(1 + |x|), in [−1, 1] for every finite x: the activation of the hidden neurons.
@@ -644,10 +708,22 @@ impl Model {
     /// The gesture that the features are.
     ///
     /// # Errors
-    /// [`Rejection::Ambiguous`] if no class is the one by the least margin, [`Rejection::Unlike`]
-    /// if the features lie outside the box of the one that is.
+    /// As [`Self::judge`].
     pub fn classify(&self, features: &Features) -> Result<Gesture, Rejection> {
-        match self.nearest(features) {
+        self.judge(self.nearest(features), features)
+    }
+
+    /// Whether features are of the class that is nearest to them.
+    ///
+    /// # Errors
+    /// [`Rejection::Ambiguous`] if there is none, or not by the least margin;
+    /// [`Rejection::Unlike`] if the features lie outside its box.
+    pub fn judge(
+        &self,
+        nearest: Option<Nearest>,
+        features: &Features,
+    ) -> Result<Gesture, Rejection> {
+        match nearest {
             Some(Nearest { gesture, margin }) if margin >= self.margin => {
                 if self.envelope.holds(gesture, features) {
                     Ok(gesture)
@@ -662,9 +738,21 @@ impl Model {
     /// The gesture that a skeleton shows.
     ///
     /// # Errors
-    /// As [`Features::of`] and [`Self::classify`].
+    /// As [`Features::of`] and [`Self::judge`].
     pub fn recognize(&self, skeleton: &Skeleton) -> Result<Gesture, Rejection> {
         self.classify(&Features::of(skeleton)?)
+    }
+
+    /// The classifier.
+    #[must_use]
+    pub const fn classifier(&self) -> &Classifier {
+        &self.classifier
+    }
+
+    /// The least margin by which a class has to be the nearest.
+    #[must_use]
+    pub const fn margin(&self) -> f32 {
+        self.margin
     }
 
     /// The classes' boxes.

@@ -297,9 +297,8 @@ struct Net {
 const LEARNING_RATE: f64 = 0.15;
 /// What an output neuron is to give for a bit that is 1; for 0 it is the negative.
 const TARGET: f64 = 0.8;
-/// Training ends when every output is this near to its target, or after so many rounds.
-const NEAR_ENOUGH: f64 = 0.1;
-const ROUNDS: usize = 1000;
+/// How often each sample is learnt from. Many more make the net fit single outliers.
+const ROUNDS: usize = 100;
 
 fn squash(x: f64) -> f64 {
     x / (1.0 + x.abs())
@@ -311,7 +310,7 @@ fn slope(y: f64) -> f64 {
 }
 
 fn target(gesture: Gesture, output: usize) -> f64 {
-    if gesture.index() >> output & 1 == 1 {
+    if gesture.code() >> output & 1 == 1 {
         TARGET
     } else {
         -TARGET
@@ -342,7 +341,7 @@ impl Net {
     fn nearest(&self, features: &Features) -> Option<Gesture> {
         let (_, outputs) = self.sums(&inputs(features));
         let code = (0..OUTPUTS).map(|o| usize::from(outputs[o] > 0.0) << o);
-        Gesture::ALL.get(code.sum::<usize>()).copied()
+        Gesture::spelled(code.sum())
     }
 
     /// Back-propagation, one sample after the other.
@@ -360,27 +359,21 @@ impl Net {
         let mut order: Vec<usize> = (0..set.len()).collect();
         for _ in 0..ROUNDS {
             order.shuffle(&mut rng);
-            let mut worst: f64 = 0.0;
             for &i in &order {
-                worst = worst.max(net.learn(set[i]));
-            }
-            if worst < NEAR_ENOUGH {
-                break;
+                net.learn(set[i]);
             }
         }
         net
     }
 
-    /// One step down the squared error of one sample; says how far the worst output was off.
-    fn learn(&mut self, sample: &Sample) -> f64 {
+    /// One step down the squared error of one sample.
+    fn learn(&mut self, sample: &Sample) {
         let inputs = inputs(&sample.features);
         let (hidden, sums) = self.sums(&inputs);
-        let mut worst: f64 = 0.0;
         let mut blame = vec![0.0; hidden.len()];
         for (o, sum) in sums.iter().enumerate() {
             let given = squash(*sum);
             let error = target(sample.gesture, o) - given;
-            worst = worst.max(error.abs());
             let delta = error * slope(given);
             for (i, value) in hidden.iter().enumerate() {
                 blame[i] += delta * self.output[o][i];
@@ -395,7 +388,6 @@ impl Net {
             }
             self.hidden[i][Features::COUNT] += LEARNING_RATE * delta;
         }
-        worst
     }
 
     /// The net as the robot computes it.
