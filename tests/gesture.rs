@@ -3,7 +3,6 @@
 mod common;
 
 use common::{any_f32, between};
-use nalgebra::Rotation3;
 use proptest::array::UniformArrayStrategy;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -45,13 +44,18 @@ impl Body {
             };
             let shoulder = at(side * 0.11, 0.818, 0.0);
             let elbow = shoulder + direction(arm[0], arm[1]) * 0.186 * h;
-            (shoulder, elbow, elbow + direction(arm[2], arm[3]) * 0.146 * h)
+            (
+                shoulder,
+                elbow,
+                elbow + direction(arm[2], arm[3]) * 0.146 * h,
+            )
         };
         let (left_shoulder, left_elbow, left_wrist) = arm(-1.0, self.left);
         let (right_shoulder, right_elbow, right_wrist) = arm(1.0, self.right);
         // Whoever stands aside of the axis faces the camera when turned by as much.
         let line_of_sight = self.place.0.atan2(self.place.1);
-        let turned = Rotation3::from_axis_angle(&Point::y_axis(), self.turn + line_of_sight);
+        let (sin, cos) = (self.turn + line_of_sight).sin_cos();
+        let turned = |at: Point| Point::new(cos * at.x + sin * at.z, at.y, cos * at.z - sin * at.x);
         let place = Point::new(self.place.0, -1.2, self.place.1);
         [
             at(0.0, 0.87, -0.01),
@@ -62,7 +66,7 @@ impl Body {
             left_wrist,
             right_wrist,
         ]
-        .map(|joint| turned * joint + place)
+        .map(|joint| turned(joint) + place)
     }
 
     fn skeleton(&self, id: u64) -> Skeleton {
@@ -129,7 +133,11 @@ fn poses() -> Vec<(Gesture, Arm, Arm)> {
             Some((gesture, left, right))
         })
         .collect();
-    assert_eq!(poses.len(), Gesture::COUNT, "the table of poses in the chapter");
+    assert_eq!(
+        poses.len(),
+        Gesture::COUNT,
+        "the table of poses in the chapter"
+    );
     poses
 }
 
@@ -474,7 +482,10 @@ fn weights_are_in_range() {
 fn bad_weights_and_settings_are_refused_by_name() {
     let mut planes = [[0.0; 7]; 21];
     planes[20][6] = f32::NAN;
-    assert_eq!(SupportVectorMachine::new(planes).unwrap_err().field, "weight");
+    assert_eq!(
+        SupportVectorMachine::new(planes).unwrap_err().field,
+        "weight"
+    );
     let mut bounds = *Model::default().envelope().bounds();
     bounds[3].arms[1] = (0.5, 0.4);
     let error = Envelope::new(bounds).unwrap_err();
