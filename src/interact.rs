@@ -80,10 +80,10 @@ pub const USUAL: Parameters = Parameters {
     view_range_max: 4.5,
     camera_forward: 0.0,
     person_radius: 0.25,
-    safety_distance: 0.6,
+    safety_distance: 0.5,
     notice_distance: 4.0,
-    stop_distance: 2.0,
-    forward_distance: 1.2,
+    stop_distance: 2.3,
+    forward_distance: 2.0,
     speed_max: 0.3,
     turn_rate_max: 0.5,
     lead_speed: 0.2,
@@ -116,6 +116,9 @@ impl core::ops::Deref for Settings {
         &self.parameters
     }
 }
+
+/// It may take this far, m, to come to rest.
+const STOPPING: f32 = 0.1;
 
 impl Settings {
     /// Checks every parameter against its range, against the others and against the robot's.
@@ -153,9 +156,13 @@ impl Settings {
         // Led forward, the robot stops before it touches.
         let touching = config.robot_radius + p.person_radius;
         in_range("forward_distance", p.forward_distance, touching, 5.0, "m")?;
+        let geometry = Geometry::new(config.robot_radius, p.safety_distance, p.view_half_angle)?;
+        // Where the robot stops, there is a valley on either side of somebody straight ahead.
+        let least = geometry.least_range(p.person_radius) + STOPPING;
+        in_range("stop_distance", p.stop_distance, least, far, "m")?;
         Ok(Self {
             parameters,
-            geometry: Geometry::new(config.robot_radius, p.safety_distance, p.view_half_angle)?,
+            geometry,
         })
     }
 
@@ -580,7 +587,9 @@ pub fn next_state(state: &State, now: &Situation) -> State {
         State::Stop if now.path_free => State::Resume,
         State::Stop => State::AskInteract,
         State::AskInteract => State::Wait,
-        State::Wait | State::NoFreePath if now.master => State::Master,
+        State::Wait if now.master => State::Master,
+        // Not while the order lasts that could not be followed.
+        State::NoFreePath if now.order.is_some_and(|order| order.side.is_none()) => State::Master,
         State::Wait | State::NoFreePath if now.path_free => State::Resume,
         State::Wait if now.overdue => State::Plan(Choice::Waypoint),
         State::Wait => State::Wait,

@@ -234,6 +234,13 @@ impl Geometry {
         person.radius + self.robot_radius + self.safety_distance / 2.0
     }
 
+    /// Distance, m, beyond which somebody straight ahead leaves a region on either side that is wide
+    /// enough: E5 to E8.
+    #[must_use]
+    pub fn least_range(&self, radius: f32) -> f32 {
+        (2.0 * self.robot_radius + radius + self.safety_distance) / self.view_tangent
+    }
+
     /// Sine of half the angle of view.
     #[must_use]
     pub const fn view_sine(&self) -> f32 {

@@ -11,6 +11,7 @@ pub mod demo;
 pub mod draw;
 pub mod drive;
 pub mod emulate;
+pub mod encounter;
 pub mod episodes;
 pub mod faults;
 pub mod log;
