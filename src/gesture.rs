@@ -50,6 +50,22 @@ pub struct Skeleton {
     pub right_wrist: Option<Point>,
 }
 
+impl Skeleton {
+    /// Its joints: neck, left and right shoulder, left and right elbow, left and right wrist.
+    #[must_use]
+    pub const fn joints(&self) -> [Option<Point>; 7] {
+        [
+            self.neck,
+            self.left_shoulder,
+            self.right_shoulder,
+            self.left_elbow,
+            self.right_elbow,
+            self.left_wrist,
+            self.right_wrist,
+        ]
+    }
+}
+
 /// What a camera's program reports at one time: untrusted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {

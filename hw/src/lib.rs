@@ -5,6 +5,7 @@
 //! real time over a [`transport`]. [`episodes`] and [`faults`] run it in virtual time by the
 //! thousand, to see whether anything is ever touched. The rest is the program `sidestep`.
 
+pub mod announce;
 pub mod base;
 pub mod config;
 pub mod demo;
@@ -18,4 +19,5 @@ pub mod log;
 pub mod pilot;
 pub mod replay;
 pub mod session;
+pub mod skeletons;
 pub mod transport;

@@ -2,15 +2,20 @@
 //! is wrong about where the joints are.
 //!
 //! What they do with their arms is [`Pose`]; a [`Body`] in a [`Place`] gives a
-//! [`sidestep::gesture::Skeleton`].
+//! [`sidestep::gesture::Skeleton`]. A [`SkeletonCamera`] sees the people of a world.
+
+use std::collections::VecDeque;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use sidestep::gesture::{Gesture, Point, Skeleton};
+use sidestep::gesture::{Frame, Gesture, PEOPLE_MAX, Point, Skeleton};
+use sidestep::quantity::Instant;
 
+use crate::depth_camera::{self, DepthCamera};
 use crate::error::{Error, require};
 use crate::geometry;
+use crate::world::World;
 
 /// Directions of one arm's two parts (rad).
 ///
@@ -163,18 +168,18 @@ impl Pose {
         ("arms out to both sides", both(OUT)),
     ];
 
-    /// Between two poses: `share` 0 is the first, 1 the second.
+    /// This pose after every part of the arms has turned towards another by at most `angle` (rad).
     #[must_use]
-    pub fn between(from: Self, to: Self, share: f64) -> Self {
+    pub fn towards(self, to: Self, angle: f64) -> Self {
         let arm = |from: Arm, to: Arm| {
             let (from, to) = (from.angles(), to.angles());
             Arm::of_angles(core::array::from_fn(|i| {
-                from[i] + (to[i] - from[i]) * share
+                from[i] + (to[i] - from[i]).clamp(-angle, angle)
             }))
         };
         Self {
-            left: arm(from.left, to.left),
-            right: arm(from.right, to.right),
+            left: arm(self.left, to.left),
+            right: arm(self.right, to.right),
         }
     }
 
@@ -535,4 +540,156 @@ fn add(from: [f64; 3], direction: [f64; 3], length: f64) -> [f64; 3] {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+/// The fastest that a part of an arm turns: half a turn in 0.6 s (rad/s).
+const ARM_RATE: f64 = core::f64::consts::PI / 0.6;
+/// Who is slower than this stands, and faces the camera (m/s).
+const STANDING: f64 = 0.1;
+/// Standing people are turned away from the camera by up to this (rad).
+const DEVIATION: f64 = 35.0_f64.to_radians();
+
+/// Somebody whom a [`SkeletonCamera`] has seen.
+#[derive(Debug, Clone)]
+struct Figure {
+    body: Body,
+    pose: Pose,
+    shows: Gesture,
+    deviation: f64,
+    last: geometry::Point,
+    heading: f64,
+}
+
+/// A depth camera whose program gives skeletons of the people in a world, with the same view and
+/// the same numbers for people as a [`DepthCamera`].
+///
+/// People who stand face the camera, more or less; people who walk face where they walk. Arms take
+/// their time.
+#[derive(Debug, Clone)]
+pub struct SkeletonCamera {
+    camera: DepthCamera,
+    parameters: depth_camera::Parameters,
+    errors: CameraErrors,
+    rng: ChaCha8Rng,
+    figures: Vec<Figure>,
+    next_ms: u64,
+    under_way: VecDeque<(u64, Frame)>,
+}
+
+impl SkeletonCamera {
+    /// A camera that looks as `parameters` say and is wrong about joints as `errors` say; people are
+    /// made up from `seed`.
+    ///
+    /// # Errors
+    /// As [`DepthCamera::new`] and [`Body::new`].
+    pub fn new(
+        parameters: depth_camera::Parameters,
+        errors: CameraErrors,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        // Checks the errors, so that nobody has to later.
+        Body::any(errors, seed)?;
+        Ok(Self {
+            camera: DepthCamera::new(parameters, seed)?,
+            parameters,
+            errors,
+            rng: ChaCha8Rng::seed_from_u64(seed),
+            figures: Vec::new(),
+            next_ms: 0,
+            under_way: VecDeque::new(),
+        })
+    }
+
+    /// Takes a picture of `world` from `pose` if it is time to; `shows` says what a person, by index,
+    /// shows or begins to show, none being rest.
+    pub fn look(
+        &mut self,
+        now_ms: u64,
+        world: &World,
+        pose: &geometry::Pose,
+        shows: impl Fn(usize) -> Option<Gesture>,
+    ) {
+        if now_ms < self.next_ms {
+            return;
+        }
+        self.next_ms = now_ms + self.parameters.period_ms;
+        let elapsed = self.parameters.period_ms as f64 / 1000.0;
+        self.move_figures(world, elapsed, shows);
+        let mut people = [None; PEOPLE_MAX];
+        let mut count = 0;
+        for (person, _, _, hidden) in self.camera.in_view(world, pose) {
+            let lost = self.rng.random_bool(self.parameters.dropout);
+            if hidden || lost || count == PEOPLE_MAX {
+                continue;
+            }
+            let id = self.camera.number(person, now_ms);
+            let Some(figure) = self.figures.get_mut(person) else {
+                continue;
+            };
+            let place = if world.people()[person].speed() < STANDING {
+                let mut place = Place::seen_from(pose, figure.last, 0.0);
+                place.turn = figure.deviation;
+                place
+            } else {
+                Place::seen_from(pose, figure.last, figure.heading)
+            };
+            people[count] = Some(figure.body.skeleton(id, figure.pose, place));
+            count += 1;
+        }
+        let frame = Frame {
+            taken_at: Instant(now_ms),
+            people,
+        };
+        self.under_way
+            .push_back((now_ms + self.parameters.delay_ms, frame));
+    }
+
+    /// The next picture that is there by now, if any is.
+    pub fn arrival(&mut self, now_ms: u64) -> Option<Frame> {
+        let there = |(due, _): &mut (u64, Frame)| *due <= now_ms;
+        self.under_way.pop_front_if(there).map(|(_, frame)| frame)
+    }
+
+    /// The number under which the camera follows a person.
+    #[must_use]
+    pub fn number_of(&self, person: usize) -> Option<u64> {
+        self.camera.number_of(person)
+    }
+
+    fn move_figures(
+        &mut self,
+        world: &World,
+        elapsed: f64,
+        shows: impl Fn(usize) -> Option<Gesture>,
+    ) {
+        for (person, there) in world.people().iter().enumerate() {
+            if self.figures.len() == person {
+                let Ok(body) = Body::any(self.errors, self.rng.random()) else {
+                    return;
+                };
+                self.figures.push(Figure {
+                    body,
+                    pose: Pose::of(Gesture::Rest),
+                    shows: Gesture::Rest,
+                    deviation: self.rng.random_range(-DEVIATION..=DEVIATION),
+                    last: there.position().unwrap_or_default(),
+                    heading: 0.0,
+                });
+            }
+            let figure = &mut self.figures[person];
+            if let Some(position) = there.position() {
+                let step = position - figure.last;
+                if step.norm() > 1e-6 {
+                    figure.heading = libm::atan2(step.y, step.x);
+                }
+                figure.last = position;
+            }
+            let shown = shows(person).unwrap_or(Gesture::Rest);
+            if shown != figure.shows {
+                figure.shows = shown;
+                figure.body.change_mood();
+            }
+            figure.pose = figure.pose.towards(Pose::of(shown), ARM_RATE * elapsed);
+        }
+    }
 }
