@@ -25,7 +25,7 @@ pub const fn beeps(announcement: Announcement) -> &'static [u8] {
 }
 
 /// Says things, one after the other.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Announcer {
     command: Vec<String>,
     speaking: Option<(Announcement, Child)>,
@@ -40,7 +40,8 @@ impl Announcer {
         let words = command.unwrap_or_default().split_whitespace();
         Self {
             command: words.map(str::to_owned).collect(),
-            ..Self::default()
+            speaking: None,
+            next: None,
         }
     }
 

@@ -147,7 +147,7 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
 }
 
 /// A folder that did not exist, named after a scenario and numbered.
-fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+pub(crate) fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {

@@ -15,6 +15,7 @@ pub mod emulate;
 pub mod encounter;
 pub mod episodes;
 pub mod faults;
+pub mod gestures;
 pub mod log;
 pub mod pilot;
 pub mod replay;
