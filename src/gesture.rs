@@ -820,18 +820,33 @@ impl Debounce {
 /// How a [`Recognizer`] follows people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Frames in a row in which a gesture has to be seen before it counts, 1 to 60.
+    /// Frames in a row in which a gesture has to be seen before it counts, 1 to 60. An arm on its way
+    /// up passes through other gestures: this has to be longer than that takes.
     pub frames: u32,
+    /// The same for stop, 1 to `frames`: to stop is always allowed, so less will do.
+    pub stop_frames: u32,
     /// Frames farther apart than this are not "in a row", ms, 20 to 1000.
     pub frame_age_max: u64,
 }
 
 impl Default for Settings {
-    /// A sixth of a second of a camera with 30 frames a second, of which a few may get lost.
+    /// A third of a second of a camera with 30 frames a second, and a tenth for stop.
     fn default() -> Self {
         Self {
-            frames: 5,
+            frames: 10,
+            stop_frames: 3,
             frame_age_max: 200,
+        }
+    }
+}
+
+impl Settings {
+    /// Frames in a row after which a gesture counts.
+    #[must_use]
+    pub const fn frames_for(&self, gesture: Gesture) -> u32 {
+        match gesture {
+            Gesture::Stop => self.stop_frames,
+            _ => self.frames,
         }
     }
 }
@@ -862,13 +877,15 @@ impl Recognizer {
     /// # Errors
     /// [`OutOfRange`] if a setting is out of its range.
     pub fn new(model: Model, settings: Settings) -> Result<Self, OutOfRange> {
-        in_range(
+        let frames = in_range(
             "gesture frames",
             settings.frames as f32,
             1.0,
             60.0,
             "frames",
         )?;
+        let stop_frames = settings.stop_frames as f32;
+        in_range("gesture stop frames", stop_frames, 1.0, frames, "frames")?;
         in_range(
             "gesture frame age",
             settings.frame_age_max as f32,
@@ -916,7 +933,9 @@ impl Recognizer {
                 seen[i] = Some(Person {
                     id: skeleton.id,
                     pose,
-                    gesture: now.gesture(self.settings.frames),
+                    gesture: pose
+                        .ok()
+                        .and_then(|pose| now.gesture(self.settings.frames_for(pose))),
                 });
             }
             i += 1;

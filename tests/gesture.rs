@@ -377,10 +377,10 @@ proptest! {
             ),
             1..30,
         ),
-        frames in 1..6_u32,
+        (frames, stop_frames) in (1..6_u32).prop_flat_map(|n| (Just(n), 1..=n)),
     ) {
         let poses = poses();
-        let settings = Settings { frames, frame_age_max: 200 };
+        let settings = Settings { frames, stop_frames, frame_age_max: 200 };
         let mut recognizer = Recognizer::new(Model::default(), settings).expect("in range");
         let mut now = 10_000_u64;
         let mut before: Option<u64> = None;
@@ -418,7 +418,8 @@ proptest! {
                 prop_assert_eq!(person.id, *id);
                 prop_assert_eq!(person.pose.ok(), pose);
                 prop_assert_eq!(matches!(person.pose, Err(Rejection::NotUnique(_))), !unique);
-                prop_assert!(law::counts_after(person.gesture.is_some(), same as u32, frames));
+                let needed = if pose == Some(Gesture::Stop) { stop_frames } else { frames };
+                prop_assert!(law::counts_after(person.gesture.is_some(), same as u32, needed));
                 prop_assert!(law::lost_at_once(person.gesture, pose));
                 next.push((*id, past));
             }
@@ -500,11 +501,15 @@ fn bad_weights_and_settings_are_refused_by_name() {
             ..Settings::default()
         },
         Settings {
+            stop_frames: 11,
+            ..Settings::default()
+        },
+        Settings {
             frame_age_max: 5000,
             ..Settings::default()
         },
     ] {
         let error = Recognizer::new(Model::default(), settings).unwrap_err();
-        assert!(error.field.starts_with("gesture frame"), "{error}");
+        assert!(error.field.starts_with("gesture "), "{error}");
     }
 }

@@ -96,6 +96,9 @@ pub struct Look {
     pub shown: Option<Gesture>,
 }
 
+/// Time between two frames of the simulated camera, ms.
+const FRAME_MS: u64 = 30;
+
 /// A camera that gives skeletons, and what recognises gestures in them.
 pub struct Watcher {
     camera: SkeletonCamera,
@@ -119,7 +122,7 @@ impl Watcher {
         seed: u64,
     ) -> Result<Self, Box<dyn Error>> {
         let parameters = sidestep_sim::depth_camera::Parameters {
-            period_ms: 30,
+            period_ms: FRAME_MS,
             // Of whole people; joints get lost besides.
             dropout: 0.005,
             ..parameters
@@ -505,14 +508,24 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
     {
         document = document.add(text(8.0, lane(number as f64) + 15.0, 13.0, name));
     }
-    for pair in looks.windows(2) {
-        let [look, next] = pair else { continue };
-        let shown = look.shown.unwrap_or(Gesture::Rest);
-        document = document.add(bar(0.0, look.t, next.t, colour(shown)));
-        let pose = look.person.and_then(|person| person.pose.ok());
-        document = document.add(bar(1.0, look.t, next.t, pose.map_or("#ffffff", colour)));
-        let counting = look.person.and_then(|person| person.gesture);
-        document = document.add(bar(2.0, look.t, next.t, counting.map_or("#ffffff", colour)));
+    let shown = |look: &Look| Some(look.shown.unwrap_or(Gesture::Rest));
+    let recognised = |look: &Look| look.person.and_then(|person| person.pose.ok());
+    let counts = |look: &Look| look.person.and_then(|person| person.gesture);
+    let lanes: [&dyn Fn(&Look) -> Option<Gesture>; 3] = [&shown, &recognised, &counts];
+    for (number, of) in lanes.into_iter().enumerate() {
+        for run in looks.chunk_by(|one, other| of(one) == of(other)) {
+            let (Some(first), Some(last)) = (run.first(), run.last()) else {
+                continue;
+            };
+            if let Some(gesture) = of(first) {
+                document = document.add(bar(
+                    number as f64,
+                    first.t,
+                    last.t + FRAME_MS,
+                    colour(gesture),
+                ));
+            }
+        }
     }
     // What the robot was about, from one change to the next.
     let states: Vec<(u64, &str)> = met

@@ -161,6 +161,9 @@ enum Command {
         /// Frames in a row after which a gesture counts, 1 to 60.
         #[arg(long, default_value_t = gesture::Settings::default().frames)]
         frames: u32,
+        /// The same for stop.
+        #[arg(long, default_value_t = gesture::Settings::default().stop_frames)]
+        stop_frames: u32,
     },
     /// Print the default configuration, commented.
     Config,
@@ -309,9 +312,11 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             source,
             model,
             frames,
+            stop_frames,
         } => {
             let settings = gesture::Settings {
                 frames,
+                stop_frames,
                 ..gesture::Settings::default()
             };
             let lines = Lines::open(&source)?;

@@ -292,8 +292,8 @@ pub struct CameraErrors {
     pub outliers: f64,
     /// An outlier is off by up to this on each axis (m).
     pub outlier_size: f64,
-    /// Share of the joints that are not tracked in a frame. Three times as many, and twice the
-    /// jitter, where a forearm points at the camera and hides the arm behind its hand.
+    /// Share of the joints that are not tracked, for some frames in a row. Three times as many, and
+    /// twice the jitter, where a forearm points at the camera and hides the arm behind its hand.
     pub dropout: f64,
 }
 
@@ -342,9 +342,13 @@ pub struct Body {
     errors: CameraErrors,
     /// The constant offset of each joint (m).
     bias: [[f64; 3]; 7],
+    /// Joints that are not tracked at the moment.
+    lost: [bool; 7],
     rng: ChaCha8Rng,
 }
 
+/// A joint that is lost is found again in one of so many frames.
+const FOUND_AGAIN: f64 = 5.0;
 /// Standard deviation of a measure about its share of the height.
 const MEASURE_SPREAD: f64 = 0.03;
 /// Standard deviation of an arm's angles from person to person, and from pose to pose (rad).
@@ -395,6 +399,7 @@ impl Body {
             mood: [0.0; 8],
             errors,
             bias: [[0.0; 3]; 7],
+            lost: [false; 7],
             rng,
         };
         body.habit = core::array::from_fn(|_| HABIT * normal(&mut body.rng));
@@ -487,7 +492,16 @@ impl Body {
         let jitter = self.errors.jitter * worse * distance / 2.0;
         let dropout = self.errors.dropout * if hidden { 3.0 } else { 1.0 };
         let outlier = joint >= 3 && self.rng.random_bool(self.errors.outliers);
-        let lost = self.rng.random_bool(dropout.min(1.0));
+        // Lost or found in such a way that the share comes out.
+        let lost = match self.lost[joint] {
+            true if dropout < 1.0 => !self.rng.random_bool(1.0 / FOUND_AGAIN),
+            true => true,
+            false => {
+                let odds = dropout / (1.0 - dropout.min(0.999));
+                self.rng.random_bool((odds / FOUND_AGAIN).min(1.0))
+            }
+        };
+        self.lost[joint] = lost;
         let mut position = [0.0; 3];
         for i in 0..3 {
             let mut error = self.bias[joint][i] + jitter * normal(&mut self.rng);
@@ -563,8 +577,8 @@ struct Figure {
 /// A depth camera whose program gives skeletons of the people in a world, with the same view and
 /// the same numbers for people as a [`DepthCamera`].
 ///
-/// People who stand face the camera, more or less; people who walk face where they walk. Arms take
-/// their time.
+/// People who stand, or show something, face the camera, more or less; people who walk face where
+/// they walk. Arms take their time.
 #[derive(Debug, Clone)]
 pub struct SkeletonCamera {
     camera: DepthCamera,
@@ -626,7 +640,8 @@ impl SkeletonCamera {
             let Some(figure) = self.figures.get_mut(person) else {
                 continue;
             };
-            let place = if world.people()[person].speed() < STANDING {
+            let standing = world.people()[person].speed() < STANDING;
+            let place = if standing || figure.shows != Gesture::Rest {
                 let mut place = Place::seen_from(pose, figure.last, 0.0);
                 place.turn = figure.deviation;
                 place
