@@ -289,6 +289,9 @@ impl Features {
     /// [`Rejection::NotTracked`] if a joint is missing, [`Rejection::OutOfRange`] if a coordinate
     /// is not finite or beyond 10 m, if the arms are not as long as a person's, or if the shoulders
     /// say that somebody is turned away by more than 55°.
+    //= gesture.INV-1
+    //= gesture.INV-2
+    //= gesture.INV-3
     pub fn of(skeleton: &Skeleton) -> Result<Self, Rejection> {
         let neck = judged("neck", skeleton.neck)?;
         let left_shoulder = judged("left shoulder", skeleton.left_shoulder)?;
@@ -383,6 +386,7 @@ pub type Weights = [f32; Features::COUNT + 1];
 const WEIGHT_MAX: f32 = 1e6;
 
 /// A weighted sum of the six features, and the constant. Finite for weights up to ±10⁶.
+//= gesture.INV-4
 #[must_use]
 pub fn weighted_sum(weights: &Weights, features: &Features) -> f32 {
     let mut sum = weights[Features::COUNT];
@@ -460,6 +464,7 @@ impl SupportVectorMachine {
 
 /// The class that wins most of its six duels, the first of those that win as many, by its closest
 /// duel. Scores are those of the pairs (0, 1), (0, 2) … (5, 6); positive is the first's victory.
+//= gesture.INV-6
 #[must_use]
 pub fn winner(scores: &[f32; PAIRS]) -> Nearest {
     let mut won = [0_u8; Gesture::COUNT];
@@ -569,6 +574,7 @@ impl NeuralNetwork {
 
 /// The class that the sums of the output neurons spell, if it is one of the seven, by the smallest
 /// of their sizes.
+//= gesture.INV-7
 #[must_use]
 pub fn spelled_by(outputs: &[f32; OUTPUTS]) -> Option<Nearest> {
     let mut code = 0;
@@ -734,6 +740,7 @@ impl Model {
     /// # Errors
     /// [`Rejection::Ambiguous`] if there is none, or not by the least margin;
     /// [`Rejection::Unlike`] if the features lie outside its box.
+    //= gesture.INV-5
     pub fn judge(
         &self,
         nearest: Option<Nearest>,
@@ -796,6 +803,7 @@ pub struct Debounce {
 
 impl Debounce {
     /// After one more frame that shows `pose`.
+    //= gesture.INV-8
     #[must_use]
     pub fn after(self, pose: Option<Gesture>) -> Self {
         let frames = match pose {
@@ -807,6 +815,8 @@ impl Debounce {
     }
 
     /// The gesture that counts, if so many frames are asked for.
+    //= gesture.INV-8
+    //= gesture.INV-9
     #[must_use]
     pub fn gesture(self, frames: u32) -> Option<Gesture> {
         if self.frames >= frames {

@@ -83,6 +83,12 @@ impl Announcer {
         beep
     }
 
+    /// Nothing is being spoken, and nothing waits to be.
+    #[must_use]
+    pub const fn is_quiet(&self) -> bool {
+        self.speaking.is_none() && self.next.is_none()
+    }
+
     fn speak(&self, announcement: Announcement) -> Option<Child> {
         let (program, arguments) = self.command.split_first()?;
         Command::new(program)
