@@ -96,35 +96,49 @@ pub fn scores_are_finite() {
     kani::cover!(activation < -0.9, "a small activation");
 }
 
-/// What is accepted is the nearest class by the least margin, and lies in its box: for any claim of
-/// what is nearest, NaN margins included, with both models as trained.
+/// What is accepted is the nearest class by the least margin, and no more unlike it than the
+/// greatest unlikeness: for any claims of both, NaN included, with both models as trained.
 //= gesture.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(12))]
 pub fn accepted_pose_is_clear() {
     let model = if kani::any() {
         Model::NEURAL_NETWORK
     } else {
         Model::SUPPORT_VECTOR_MACHINE
     };
-    let features = any_features();
     let nearest = Nearest {
         gesture: any_gesture(),
         margin: kani::any(),
     };
-    let claim = if kani::any() { Some(nearest) } else { None };
-    let judged = model.judge(claim, &features);
+    let unlikeness = kani::any();
+    let judged = model.judge(&nearest, unlikeness);
     if let Ok(gesture) = judged {
         assert!(law::is_clear(
-            claim == Some(nearest) && gesture == nearest.gesture,
+            gesture == nearest.gesture,
             nearest.margin,
             model.margin(),
-            model.envelope().holds(gesture, &features)
+            unlikeness,
+            model.unlikeness()
         ));
     }
+    kani::cover!(judged.is_ok(), "accepted");
     kani::cover!(nearest.margin.is_nan(), "no margin");
-    kani::cover!(claim.is_none(), "no class");
+    kani::cover!(nearest.margin > 1.0 && judged.is_err(), "unlike");
+}
+
+/// How unlike a class any features are is a finite number, for both models as trained.
+//= gesture.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(12))]
+pub fn unlikeness_is_finite() {
+    let model = Model::NEURAL_NETWORK;
+    let unlikeness = model
+        .prototypes()
+        .unlikeness(any_gesture(), &any_features());
+    assert!(law::is_score(unlikeness) && unlikeness >= 0.0);
+    kani::cover!(unlikeness > 1.0, "unlike");
 }
 
 /// The winner by a margin that is not negative beats all others, for any finite scores.

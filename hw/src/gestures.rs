@@ -437,7 +437,7 @@ fn figure(skeleton: &Skeleton, ink: &str) -> Group {
 pub fn draw(met: &Met, looks: &[Look]) -> String {
     let chosen = chosen(looks);
     let rows = chosen.len().div_ceil(CELLS);
-    let strip = rows as f64 * 190.0;
+    let strip = rows as f64 * 175.0;
     let end = met
         .simulation
         .trace()
@@ -446,7 +446,7 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
         .max(1) as f64;
     let x = |t: u64| MARGIN + (WIDTH - MARGIN - 20.0) * t as f64 / end;
     let top = 50.0 + strip;
-    let height = top + 6.0 * LANE + 170.0;
+    let height = top + 6.0 * LANE + 130.0;
     let mut document = Document::new()
         .set("viewBox", (0.0, 0.0, WIDTH, height))
         .set("width", WIDTH)
@@ -469,7 +469,7 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
 
     for (i, look) in chosen.iter().enumerate() {
         let left = (i % CELLS) as f64 * CELL;
-        let upper = 40.0 + (i / CELLS) as f64 * 190.0;
+        let upper = 40.0 + (i / CELLS) as f64 * 175.0;
         let counting = look.person.and_then(|person| person.gesture);
         let (ink, words) = match (counting, look.person.map(|person| person.pose)) {
             (Some(gesture), _) => (COUNTS, gesture.to_string()),
@@ -544,30 +544,34 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
             document = document.add(text(x(*from) + 3.0, lane(3.0) + 15.0, 11.0, name));
         }
     }
+    let mut said = 0;
     for happening in &met.happenings {
         if let Event::Say(announcement) = happening.event {
+            // Words that follow closely stand one below the other.
+            let below = 12.0 * f64::from(said % 3);
+            said += 1;
             document = document
                 .add(
                     Line::new()
                         .set("x1", x(happening.t))
                         .set("x2", x(happening.t))
                         .set("y1", lane(3.0))
-                        .set("y2", lane(4.0) + 8.0)
+                        .set("y2", lane(4.0) + 8.0 + below)
                         .set("stroke", INK),
                 )
                 .add(text(
                     x(happening.t) + 3.0,
-                    lane(4.0) + 10.0,
+                    lane(4.0) + 10.0 + below,
                     10.0,
                     &format!("“{}”", announcement.text()),
                 ));
         }
     }
-    document = document.add(speeds(met, &x, lane(5.0)));
+    document = document.add(speeds(met, &x, lane(6.0)));
     for second in (0..=(end as u64 / 1000)).step_by(5) {
         document = document.add(text(
             x(second * 1000) - 4.0,
-            lane(5.0) + 85.0,
+            lane(6.0) + 85.0,
             11.0,
             &format!("{second} s"),
         ));
@@ -578,16 +582,16 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
             .add(
                 Rectangle::new()
                     .set("x", left)
-                    .set("y", lane(5.0) + 100.0)
+                    .set("y", lane(6.0) + 100.0)
                     .set("width", 14)
                     .set("height", 14)
                     .set("fill", colour(gesture)),
             )
-            .add(text(left + 18.0, lane(5.0) + 112.0, 12.0, gesture.name()));
+            .add(text(left + 18.0, lane(6.0) + 112.0, 12.0, gesture.name()));
         left += 120.0;
     }
     document
-        .add(text(left, lane(5.0) + 112.0, 12.0, "white: none"))
+        .add(text(left, lane(6.0) + 112.0, 12.0, "white: none"))
         .to_string()
 }
 

@@ -104,6 +104,21 @@ pub fn outputs(hidden: &[[f64; 7]; 6], output: &[[f64; 7]; 3], six: &[f64; 6]) -
     output.map(|weights| weighted(&weights, &hidden))
 }
 
+/// How unlike a class features are: of the squared distances from the class's means, in its standard
+/// deviations, the mean, or a quarter of the greatest.
+#[must_use]
+pub fn unlikeness(usual: &[(f64, f64)], values: &[f64]) -> f64 {
+    let squares: Vec<f64> = usual
+        .iter()
+        .zip(values)
+        .map(|((mean, spread), value)| ((value - mean) / spread).powi(2))
+        .collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    squares
+        .iter()
+        .fold(mean, |most, square| most.max(square / 4.0))
+}
+
 /// S3.T1: (average error of the folds, success rate in %).
 #[must_use]
 pub fn t1(total_error: f64, folds: f64, samples: f64) -> (f64, f64) {
@@ -136,17 +151,17 @@ pub fn whole_or_rejected(whole: bool, recognised: bool) -> bool {
     whole || !recognised
 }
 
-/// gesture.INV-4: a score is finite.
+/// gesture.INV-4: a score, or an unlikeness, is finite.
 #[must_use]
 pub fn is_score(score: f32) -> bool {
     score.is_finite()
 }
 
-/// gesture.INV-5: what is recognised is the nearest class, by the least margin or more, and lies
-/// in that class's box.
+/// gesture.INV-5: what is recognised is the nearest class, by the least margin or more, and no more
+/// unlike it than the greatest unlikeness.
 #[must_use]
-pub fn is_clear(is_nearest: bool, margin: f32, least: f32, in_box: bool) -> bool {
-    is_nearest && margin >= least && in_box
+pub fn is_clear(is_nearest: bool, margin: f32, least: f32, unlikeness: f32, greatest: f32) -> bool {
+    is_nearest && margin >= least && unlikeness <= greatest
 }
 
 /// gesture.INV-6: with a positive margin, the class beats every other in their duel.
