@@ -342,9 +342,9 @@ proptest! {
 
     #[test]
     fn unlikeness_is_the_references(features in features()) {
-        let prototypes = Model::default().prototypes().get();
+        let prototypes = *Model::default().prototypes();
         for gesture in Gesture::ALL {
-            let prototype = &prototypes[gesture.index()];
+            let prototype = &prototypes.get()[gesture.index()];
             let usual: Vec<(f64, f64)> = prototype
                 .six
                 .iter()
@@ -354,7 +354,7 @@ proptest! {
             let values = features.six().iter().chain(features.arms());
             let values: Vec<f64> = values.copied().map(f64::from).collect();
             let wanted = law::unlikeness(&usual, &values);
-            let got = f64::from(Model::default().prototypes().unlikeness(gesture, &features));
+            let got = f64::from(prototypes.unlikeness(gesture, &features));
             prop_assert!((got - wanted).abs() <= 1e-3 * wanted.max(1.0));
         }
     }

@@ -64,7 +64,7 @@ fn new_people_are_understood() {
     }
 }
 
-/// The stated rate: 97 of 100 frames of poses outside the classes are rejected.
+/// The stated rate: 98 of 100 frames of poses outside the classes are rejected.
 #[test]
 fn poses_of_daily_life_are_rejected() {
     let poses: Vec<(Pose, Option<Gesture>)> =
@@ -73,7 +73,7 @@ fn poses_of_daily_life_are_rejected() {
         let [_, taken, rejected] = tally(&model, &poses, 200);
         let share = f64::from(rejected) / f64::from(taken + rejected);
         println!("{name}: {share:.4} rejected");
-        assert!(share > 0.97, "{name}: {share}");
+        assert!(share > 0.98, "{name}: {share}");
     }
 }
 
