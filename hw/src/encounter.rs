@@ -10,8 +10,7 @@ use crate::episodes::{
 use crate::pilot::settings;
 use sidestep::gesture::Gesture;
 use sidestep::interact::{
-    Announcement, Commissioned, Event, Frame, Interact, LateralAxis, Orders, Settings, State,
-    Trial, USUAL,
+    Announcement, Commissioned, Event, Frame, Interact, LateralAxis, Orders, Settings, State, Trial,
 };
 use sidestep::valley::Side;
 use sidestep_sim::depth_camera::{self, DepthCamera};
