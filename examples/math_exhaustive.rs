@@ -34,7 +34,7 @@ struct Function {
     nearness_is: &'static str,
 }
 
-const FUNCTIONS: [Function; 3] = [
+const FUNCTIONS: [Function; 4] = [
     Function {
         name: "sin",
         invariant: "math.INV-1",
@@ -65,6 +65,17 @@ const FUNCTIONS: [Function; 3] = [
             positive.then(|| f64::from(result) - f64::from(x.max(1.0)))
         },
         nearness_is: "greatest result − max(1, x) (at most 0)",
+    },
+    Function {
+        name: "ln",
+        invariant: "math.INV-5",
+        run: math::ln,
+        kept: contract::ln,
+        nearness: |x, result| {
+            let within = x >= 1.0 && x.is_finite();
+            within.then(|| f64::from(result) - f64::from(x - 1.0))
+        },
+        nearness_is: "greatest result − (x − 1) (at most 0)",
     },
 ];
 

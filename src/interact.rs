@@ -391,6 +391,30 @@ pub struct Path {
 }
 
 impl Path {
+    /// A path from a point (m) in a direction, of a length in m, to be driven at a speed in m/s after
+    /// a turn at a rate in rad/s.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a coordinate is not within 10 km, or length, speed or turn rate not in 0 to
+    /// 100 m, 0 to 10 m/s and 0 to 20 rad/s.
+    pub fn new(
+        from: Vector2<f32>,
+        heading: Angle,
+        length: f32,
+        speed: f32,
+        turn_rate: f32,
+    ) -> Result<Self, OutOfRange> {
+        in_range("x of a path", from.x, -1e4, 1e4, "m")?;
+        in_range("y of a path", from.y, -1e4, 1e4, "m")?;
+        Ok(Self {
+            from,
+            heading,
+            length: in_range("length of a path", length, 0.0, 100.0, "m")?,
+            speed: in_range("speed of a path", speed, 0.0, 10.0, "m/s")?,
+            turn_rate: in_range("turn rate of a path", turn_rate, 0.0, 20.0, "rad/s")?,
+        })
+    }
+
     /// Where it begins, m.
     #[must_use]
     pub const fn from(&self) -> Vector2<f32> {
@@ -1240,13 +1264,14 @@ impl Interact {
             1.0
         };
         let turn_rate = valley.turn_rate(geometry, self.settings.turn_rate_max);
-        Some(Path {
-            from: view.pose.position,
-            heading: view.pose.heading.plus(valley.turn()),
-            length: valley.length,
-            speed: valley.speed(geometry, speed_max).scaled(crowd).get(),
-            turn_rate: turn_rate.abs(),
-        })
+        Path::new(
+            view.pose.position,
+            view.pose.heading.plus(valley.turn()),
+            valley.length,
+            valley.speed(geometry, speed_max).scaled(crowd).get(),
+            turn_rate.abs(),
+        )
+        .ok()
     }
 
     /// Goes on to the next state, and says what there is to say.
@@ -1291,7 +1316,8 @@ impl Interact {
     }
 
     /// What is asked for, as speed and turn rate.
-    fn advice<const N: usize>(&self, drive: Drive, view: &View<N>) -> Advice {
+    #[must_use]
+    pub fn advice<const N: usize>(&self, drive: Drive, view: &View<N>) -> Advice {
         let config = &self.config;
         let unseen = if self.somebody_unseen(view) {
             self.settings.unseen_share
@@ -1311,17 +1337,18 @@ impl Interact {
             Drive::ToGoal => towards(view.goal.heading, config.cruise_speed, config.turn_rate_max),
             Drive::Turn(path) => Advice {
                 speed: 0.0,
-                ..towards(path.heading, 0.0, path.turn_rate)
+                ..towards(
+                    path.heading,
+                    0.0,
+                    path.turn_rate.min(self.settings.turn_rate_max),
+                )
             },
             Drive::Along(path) => {
                 // Back to the line where the robot has left it.
                 let [_, aside] = path.coordinates(view.pose.position);
                 let back = Angle::radians((-2.0 * aside).clamp(-0.3, 0.3)).unwrap_or(Angle::ZERO);
-                towards(
-                    path.heading.plus(back),
-                    path.speed,
-                    self.settings.turn_rate_max,
-                )
+                let speed = path.speed.min(self.settings.speed_max);
+                towards(path.heading.plus(back), speed, self.settings.turn_rate_max)
             }
             Drive::Forward(bearing) => {
                 let limit = self.settings.turn_rate_max;

@@ -199,10 +199,10 @@ pub struct Geometry {
     view_tangent: f32,
 }
 
-/// Ways are planned by so much wider than they are checked (m)...
+/// Ways are planned by so much wider than they must be (m), so that the check does not refuse them.
 const PLANNED: f32 = 5e-5;
-/// ...and checked by so much wider than they must be: more than floats round within 20 m.
-const CHECKED: f32 = 1e-5;
+/// Ways are checked by so much wider than they must be (m): more than floats round within 20 m.
+pub const ROUNDING: f32 = 1e-5;
 
 impl Geometry {
     /// r_r and d in m, half the sensor's angle of view in radians (35° in the paper).
@@ -409,7 +409,7 @@ impl Geometry {
         let mut i = 0;
         while i < scene.count {
             let person = &scene.people[i];
-            let clearance = self.clearance(person) + CHECKED;
+            let clearance = self.clearance(person) + ROUNDING;
             if !keeps_clear([person.lateral, person.depth], clearance, heading, length) {
                 return false;
             }
