@@ -19,7 +19,9 @@ const TARGETS: &[(&str, Target)] = &[
     ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
+    ("interact", targets::interact::run),
     ("shield", targets::shield::run),
+    ("valley", targets::valley::run),
 ];
 
 /// Numbers that are the same in every run (SplitMix64).
