@@ -180,9 +180,9 @@ impl Scene {
 
 /// A person stands further left than another, or comes first by other numbers.
 fn before(one: &Person, other: &Person) -> bool {
-    let [one, other] = [one, other].map(|p| [p.lateral, p.depth, p.radius]);
+    let [one, other] = [one, other].map(|p| [p.lateral, p.depth, p.range, p.radius]);
     let mut i = 0;
-    while i < 2 && one[i] == other[i] {
+    while i < 3 && one[i] == other[i] {
         i += 1;
     }
     one[i] < other[i]
