@@ -18,6 +18,7 @@ use crate::kani;
 pub mod arcos;
 pub mod avoid;
 pub mod failsafe;
+pub mod gesture;
 pub mod interact;
 pub mod kinematics;
 pub mod math;

@@ -2,7 +2,7 @@
 
 #[cfg(not(kani))]
 use super::kani;
-use sidestep::valley::{self, Geometry, Heading, Person, Scene};
+use sidestep::valley::{self, Geometry, Heading, Person, Region, Scene};
 use sidestep_spec::valley as law;
 
 /// Any person there is, made either way; the square root by its contract.
@@ -73,7 +73,13 @@ pub fn admitted_way_is_clear() {
     }
 }
 
-/// An accepted valley was wide enough and is admitted: beside any person, for any robot and sensor.
+/// Any direction that a search may find, or none.
+fn any_direction(_: &Geometry, _: &Scene, _: usize, _: &Region) -> Option<f32> {
+    if kani::any() { Some(kani::any()) } else { None }
+}
+
+/// An accepted valley was wide enough and is admitted, whatever direction was found for it: beside any
+/// person, for any robot and sensor.
 //= valley.INV-2
 //= valley.INV-6
 #[cfg_attr(kani, kani::proof)]
@@ -83,6 +89,13 @@ pub fn admitted_way_is_clear() {
 #[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
 #[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
+#[cfg_attr(
+    kani,
+    kani::stub(
+        crate::valley::Geometry::direction,
+        crate::proofs::valley::any_direction
+    )
+)]
 pub fn accepted_valley_is_admitted() {
     let geometry = any_geometry();
     let scene = scene(&[any_person()]);

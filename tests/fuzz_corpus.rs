@@ -19,6 +19,7 @@ const TARGETS: &[(&str, Target)] = &[
     ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
+    ("gesture", targets::gesture::run),
     ("interact", targets::interact::run),
     ("shield", targets::shield::run),
     ("valley", targets::valley::run),

@@ -204,6 +204,20 @@ fn valley_regions(printed: bool, i: &Input) -> Computed {
 /// What the reference and the core make of a case; `None` if its equation is not here yet.
 fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
     let computed = match (equation, variant) {
+        ("S3.T1", "printed") => {
+            let (average, success) = spec::gesture::t1(
+                i.number("total_error"),
+                i.number("folds"),
+                i.number("samples"),
+            );
+            Computed {
+                reference: vec![
+                    ("average_error", number(average)),
+                    ("success_pct", number(success)),
+                ],
+                core: None,
+            }
+        }
         ("S1.E1", "lit") => {
             let (heading, camera) = (i.number("theta_R_deg"), i.number("theta_cam_deg"));
             let core = avoid::obstacle_robot_angle(

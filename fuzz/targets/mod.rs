@@ -8,6 +8,7 @@ pub mod arcos;
 pub mod avoid;
 pub mod bytes;
 pub mod controller;
+pub mod gesture;
 pub mod interact;
 pub mod reference;
 pub mod settings;

@@ -190,7 +190,7 @@ pub fn valley(options: &Options, status: &mut Status) -> Result<u32, Box<dyn Err
 }
 
 /// A folder that did not exist, named after a scenario and numbered.
-fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+pub(crate) fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {

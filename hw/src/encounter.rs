@@ -10,7 +10,8 @@ use crate::episodes::{
 use crate::pilot::settings;
 use sidestep::gesture::Gesture;
 use sidestep::interact::{
-    Announcement, Commissioned, Event, Frame, Interact, LateralAxis, Orders, Settings, State, Trial,
+    Announcement, Commissioned, Event, Frame, Interact, LateralAxis, Orders, People, Settings,
+    State, Trial,
 };
 use sidestep::valley::Side;
 use sidestep_sim::depth_camera::{self, DepthCamera};
@@ -220,6 +221,38 @@ impl Cues {
     }
 }
 
+/// What sees people for the robot.
+pub trait Camera {
+    /// Takes a picture of `world` from `pose` if it is time to; `shows` says what a person, by
+    /// index, shows.
+    fn look(
+        &mut self,
+        now_ms: u64,
+        world: &World,
+        pose: &Pose,
+        shows: &dyn Fn(usize) -> Option<Gesture>,
+    );
+
+    /// The next picture that is there by now, if any is.
+    fn arrival(&mut self, now_ms: u64) -> Option<People>;
+}
+
+impl Camera for DepthCamera {
+    fn look(
+        &mut self,
+        now_ms: u64,
+        world: &World,
+        pose: &Pose,
+        shows: &dyn Fn(usize) -> Option<Gesture>,
+    ) {
+        Self::look(self, now_ms, world, pose, shows);
+    }
+
+    fn arrival(&mut self, now_ms: u64) -> Option<People> {
+        Self::arrival(self, now_ms)
+    }
+}
+
 /// Runs a meeting to its end.
 ///
 /// # Errors
@@ -228,6 +261,21 @@ pub fn run(
     encounter: &Encounter,
     config: &RobotConfig,
     parameters: sidestep::interact::Parameters,
+    tell: Tell<'_>,
+) -> Result<Met, Box<dyn Error>> {
+    let mut camera = DepthCamera::new(encounter.camera, encounter.scenario.seed)?;
+    run_with(encounter, config, parameters, &mut camera, tell)
+}
+
+/// Runs a meeting to its end, seen by any camera.
+///
+/// # Errors
+/// If a parameter is out of range.
+pub fn run_with(
+    encounter: &Encounter,
+    config: &RobotConfig,
+    parameters: sidestep::interact::Parameters,
+    camera: &mut dyn Camera,
     mut tell: Tell<'_>,
 ) -> Result<Met, Box<dyn Error>> {
     let scenario = &encounter.scenario;
@@ -235,7 +283,6 @@ pub fn run(
     let law = law(config, parameters)?;
     let pilot = pilot(scenario, config, settings(config, false, None), law)?;
     let mut ride = Ride::new(scenario.simulate()?, pilot, encounter.link, seed)?;
-    let mut camera = DepthCamera::new(encounter.camera, seed)?;
     let mut cues = Cues::default();
     let mut happenings = Vec::new();
     let (mut ticks, mut ticks_stopped) = (0, 0);
@@ -245,7 +292,7 @@ pub fn run(
         let now = ride.now();
         if encounter.camera_fails.is_none_or(|fails| now < fails) {
             let pose = ride.simulation.robot().base().pose();
-            camera.look(now, ride.simulation.world(), &pose, |person| {
+            camera.look(now, ride.simulation.world(), &pose, &|person| {
                 cues.shown(&encounter.showings, person, now)
             });
         }

@@ -5,6 +5,7 @@
 //! real time over a [`transport`]. [`episodes`] and [`faults`] run it in virtual time by the
 //! thousand, to see whether anything is ever touched. The rest is the program `sidestep`.
 
+pub mod announce;
 pub mod base;
 pub mod config;
 pub mod demo;
@@ -14,8 +15,10 @@ pub mod emulate;
 pub mod encounter;
 pub mod episodes;
 pub mod faults;
+pub mod gestures;
 pub mod log;
 pub mod pilot;
 pub mod replay;
 pub mod session;
+pub mod skeletons;
 pub mod transport;

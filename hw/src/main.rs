@@ -1,13 +1,16 @@
 //! The program `sidestep`.
 
 use clap::{Parser, Subcommand};
+use sidestep::gesture;
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
+use sidestep_hw::gestures;
 use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_hw::replay::{self, Columns};
+use sidestep_hw::skeletons::Lines;
 use sidestep_hw::{log, transport};
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
 use sidestep_sim::sonar::Faults;
@@ -41,7 +44,8 @@ enum Command {
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
     /// people; needs --data), valley (S3's Figures 8 and 9: people are asked, lead the robot or let it
-    /// choose, and are passed; in virtual time, without a log).
+    /// choose, and are passed; in virtual time, without a log), gesture (somebody leads the robot by
+    /// gestures, S3 Fig. 8).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -61,6 +65,10 @@ enum Command {
         /// People walk on even into a robot that stands still.
         #[arg(long)]
         inconsiderate: bool,
+        /// A command that speaks what the robot says, such as espeak-ng; it gets the words as its last
+        /// argument.
+        #[arg(long, value_name = "COMMAND")]
+        speech: Option<String>,
         /// How much faster than real time.
         #[arg(long, default_value_t = 4.0)]
         speed: f64,
@@ -136,8 +144,49 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Recognise gestures in skeletons that a depth camera's program gives as lines of JSON.
+    ///
+    /// One line is one frame: {"t": 41730, "people": [{"id": 7, "neck": [0.12, 0.31, 2.4],
+    /// "left_shoulder": [..], "right_shoulder": [..], "left_elbow": [..], "right_elbow": [..],
+    /// "left_wrist": [..], "right_wrist": [..]}]}, with t in ms of the camera's clock and points in
+    /// metres, x to the camera's left, y up, z ahead. Left and right are the person's own; a joint
+    /// that is not tracked is left out.
+    ///
+    /// Prints a line of JSON whenever what somebody shows, or what counts, changes. `demo gesture`
+    /// leaves a file to try.
+    Gestures {
+        /// Where skeletons come from: - is standard input, tcp:HOST:PORT a server, else a file.
+        source: String,
+        /// Which of S3's two models recognises.
+        #[arg(long, value_enum, default_value = "net")]
+        model: ModelName,
+        /// Frames in a row after which a gesture counts, 1 to 60.
+        #[arg(long, default_value_t = gesture::Settings::default().frames)]
+        frames: u32,
+        /// The same for stop.
+        #[arg(long, default_value_t = gesture::Settings::default().stop_frames)]
+        stop_frames: u32,
+    },
     /// Print the default configuration, commented.
     Config,
+}
+
+/// S3's two models.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ModelName {
+    /// The back-propagation net.
+    Net,
+    /// The linear support vector machine.
+    Svm,
+}
+
+impl From<ModelName> for gesture::Model {
+    fn from(name: ModelName) -> Self {
+        match name {
+            ModelName::Net => Self::NEURAL_NETWORK,
+            ModelName::Svm => Self::SUPPORT_VECTOR_MACHINE,
+        }
+    }
 }
 
 fn goal(text: &str) -> Result<[f32; 2], String> {
@@ -173,8 +222,11 @@ fn main() -> ExitCode {
         eprintln!("sidestep: cannot catch Ctrl-C: {error}");
         return ExitCode::FAILURE;
     }
-    // Ends with the program.
-    std::thread::spawn(|| SIGNALS.listen());
+    // Standard input may be what skeletons come from.
+    if !matches!(arguments.command, Command::Gestures { .. }) {
+        // Ends with the program.
+        std::thread::spawn(|| SIGNALS.listen());
+    }
     match run(arguments.command) {
         Ok(code) => code,
         Err(error) => {
@@ -193,6 +245,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             seed,
             dropout,
             inconsiderate,
+            speech,
             speed,
             out,
             config,
@@ -209,7 +262,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 },
                 ..Knobs::default()
             };
-            run_demo(&Options {
+            let options = Options {
                 scenario,
                 data,
                 start_time,
@@ -217,7 +270,12 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 speed,
                 out,
                 config: read_config(config.as_deref())?,
-            })
+            };
+            if options.scenario == gestures::DEMO {
+                gestures::demo(&options, speech.as_deref(), &SIGNALS)?;
+                return Ok(ExitCode::SUCCESS);
+            }
+            run_demo(&options)
         }
         Command::Run {
             port,
@@ -252,6 +310,21 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             }
         }
         Command::Faults { seeds, out } => run_faults(seeds, out.as_deref()),
+        Command::Gestures {
+            source,
+            model,
+            frames,
+            stop_frames,
+        } => {
+            let settings = gesture::Settings {
+                frames,
+                stop_frames,
+                ..gesture::Settings::default()
+            };
+            let lines = Lines::open(&source)?;
+            gestures::watch(lines, model.into(), settings, &mut std::io::stdout().lock())?;
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Config => {
             print!("{}", config::default_toml());
             Ok(ExitCode::SUCCESS)

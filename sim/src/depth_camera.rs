@@ -106,35 +106,10 @@ impl DepthCamera {
             return;
         }
         self.next_ms = now_ms + self.parameters.period_ms;
-        let ahead = direction(pose.heading);
-        let left = Vector::new(-ahead.y, ahead.x);
-        // Everybody in view, nearest first.
-        let mut places: Vec<(usize, f64, f64, f64)> = Vec::new();
-        for (person, body) in world.people().iter().enumerate() {
-            let Some(place) = body.position() else {
-                continue;
-            };
-            let offset = place - pose.position;
-            let (depth, lateral) = (offset.dot(&ahead), offset.dot(&left));
-            let p = &self.parameters;
-            let range = offset.norm();
-            if depth > 0.0
-                && (p.range_min..=p.range_max).contains(&range)
-                && lateral.abs() <= depth * p.half_angle.tan()
-            {
-                places.push((person, depth, lateral, body.radius()));
-            }
-        }
-        places.sort_by(|one, other| one.1.total_cmp(&other.1));
-        self.numbers.resize(world.people().len(), None);
+        let places = self.in_view(world, pose);
         let mut people = [None; PEOPLE_MAX];
         let mut count = 0;
-        for (i, &(person, depth, lateral, _)) in places.iter().enumerate() {
-            // Half hidden is hidden.
-            let hidden = places[..i].iter().any(|&(_, nearer, aside, radius)| {
-                let along = nearer / depth;
-                (lateral * along - aside).abs() < radius
-            });
+        for (person, depth, lateral, hidden) in places {
             let lost = self.rng.random_bool(self.parameters.dropout);
             if hidden || lost || count == PEOPLE_MAX {
                 continue;
@@ -162,6 +137,41 @@ impl DepthCamera {
         self.under_way.push_back((due, People { taken_at, people }));
     }
 
+    /// Everybody in view, nearest first: who, by index in the world, how far ahead, how far to the
+    /// left (m), and whether somebody nearer hides them.
+    pub(crate) fn in_view(&self, world: &World, pose: &Pose) -> Vec<(usize, f64, f64, bool)> {
+        let ahead = direction(pose.heading);
+        let left = Vector::new(-ahead.y, ahead.x);
+        let mut places: Vec<(usize, f64, f64, f64)> = Vec::new();
+        for (person, body) in world.people().iter().enumerate() {
+            let Some(place) = body.position() else {
+                continue;
+            };
+            let offset = place - pose.position;
+            let (depth, lateral) = (offset.dot(&ahead), offset.dot(&left));
+            let p = &self.parameters;
+            let range = offset.norm();
+            if depth > 0.0
+                && (p.range_min..=p.range_max).contains(&range)
+                && lateral.abs() <= depth * p.half_angle.tan()
+            {
+                places.push((person, depth, lateral, body.radius()));
+            }
+        }
+        places.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let hidden = |i: usize| {
+            let (_, depth, lateral, _) = places[i];
+            // Half hidden is hidden.
+            places[..i].iter().any(|&(_, nearer, aside, radius)| {
+                let along = nearer / depth;
+                (lateral * along - aside).abs() < radius
+            })
+        };
+        (0..places.len())
+            .map(|i| (places[i].0, places[i].1, places[i].2, hidden(i)))
+            .collect()
+    }
+
     /// The next picture that is there by now, if any is.
     pub fn arrival(&mut self, now_ms: u64) -> Option<People> {
         let there = |(due, _): &mut (u64, People)| *due <= now_ms;
@@ -175,7 +185,10 @@ impl DepthCamera {
         Some(number)
     }
 
-    fn number(&mut self, person: usize, now_ms: u64) -> u64 {
+    pub(crate) fn number(&mut self, person: usize, now_ms: u64) -> u64 {
+        if self.numbers.len() <= person {
+            self.numbers.resize(person + 1, None);
+        }
         let number = match self.numbers[person] {
             Some((number, seen)) if now_ms <= seen + FORGOTTEN_MS => number,
             _ => {

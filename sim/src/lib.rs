@@ -3,8 +3,8 @@
 //!
 //! - [`world`]: walls, boxes, discs and [`person`]s in the plane; [`eth`] and [`barn`] read
 //!   recorded people and cluttered worlds.
-//! - [`sonar`], [`compass`], [`depth_camera`], [`base`]: what the robot senses with, wrongly where
-//!   asked to, and what it drives with.
+//! - [`sonar`], [`compass`], [`depth_camera`], [`skeleton`], [`base`]: what the robot senses
+//!   with, wrongly where asked to, and what it drives with.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
 //!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
 //! - [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
@@ -41,6 +41,7 @@ pub mod person;
 pub mod robot;
 pub mod scenario;
 pub mod simulation;
+pub mod skeleton;
 pub mod sonar;
 mod table;
 pub mod truth;

@@ -15,6 +15,7 @@
 pub mod arcos;
 pub mod avoid;
 pub mod failsafe;
+pub mod gesture;
 pub mod interact;
 pub mod kinematics;
 pub mod math;
