@@ -271,6 +271,7 @@ impl Frame {
     /// # Errors
     /// [`CommissioningError`] if the person did not stand 0.3 m to 10 m beside the axis, or if camera
     /// or gesture mean the other side.
+    //= interact.INV-6
     pub fn commissioned(self, trial: &Trial) -> Result<Commissioned, CommissioningError> {
         let aside = in_range(
             "lateral place in the trial",
@@ -589,6 +590,9 @@ pub struct Situation {
 }
 
 /// M2: the state that follows. Total; a stop comes before everything but having arrived.
+//= interact.INV-2
+//= interact.INV-4
+//= interact.INV-8
 #[must_use]
 pub fn next_state(state: &State, now: &Situation) -> State {
     if *state == State::Arrived || now.at_goal {
@@ -653,6 +657,8 @@ pub enum Drive {
 
 /// What a state asks for in a situation. Forward and backward are a dead man's switch: they last no
 /// longer than the gesture, the master and the camera's picture.
+//= interact.INV-1
+//= interact.INV-3
 #[must_use]
 pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: bool) -> Drive {
     if now.stop_shown || !now.camera {
@@ -1027,6 +1033,7 @@ impl Interact {
     }
 
     /// Lets go of whoever has been missed for long enough, or not been seen for too long (ER-X1).
+    //= interact.INV-7
     fn forget(&mut self, now: Instant) {
         let (gone, hold) = (self.settings.gone_time, self.settings.person_hold_time);
         let mut i = 0;
@@ -1316,6 +1323,7 @@ impl Interact {
     }
 
     /// What is asked for, as speed and turn rate.
+    //= interact.INV-5
     #[must_use]
     pub fn advice<const N: usize>(&self, drive: Drive, view: &View<N>) -> Advice {
         let config = &self.config;
