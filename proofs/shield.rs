@@ -159,7 +159,7 @@ pub fn plan_covers_command() {
     let limits = *guard.limits();
     let speed = any_in(1, limits.speed_max());
     match guard.plan(speed, 0, &Motion::REST) {
-        Some(plan) => plan_covers(&limits, &plan, speed + limits.speed_gain()),
+        Some(plan) => plan_covers(&limits, &plan, speed, 0),
         None => unreachable!("there is a plan for every speed that may be told"),
     }
     kani::cover!(speed == 400, "full speed");
@@ -180,20 +180,18 @@ pub fn plan_covers_motion() {
         ..Motion::REST
     };
     match guard.plan(0, 0, &motion) {
-        Some(plan) => plan_covers(&limits, &plan, motion.speed),
+        Some(plan) => plan_covers(&limits, &plan, 0, motion.speed),
         None => assert!(motion.speed > limits.speed_max() + limits.speed_gain()),
     }
     kani::cover!(motion.speed == 466, "as fast as it may be");
     kani::cover!(motion.speed == 467, "faster");
 }
 
-fn plan_covers(limits: &Limits, plan: &Plan, fastest: i32) {
-    assert!(promise::covers_rest(
-        plan.way[0],
-        plan.time,
-        fastest,
-        limits.braking(),
-        limits.reaction_time(),
+fn plan_covers(limits: &Limits, plan: &Plan, speed: i32, motion: i32) {
+    assert!(promise::plan_suffices(
+        [plan.way[0], plan.time],
+        [speed, limits.speed_gain(), motion],
+        [limits.braking(), limits.reaction_time()],
     ));
 }
 

@@ -13,7 +13,9 @@ use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length};
 use sidestep::ring::{Placement, Ring};
 use sidestep::track::Obstacle;
-use sidestep::view::{Class, EchoMemory, GoalView, Hazard, Look, Memory, Odometer, Pose, View};
+use sidestep::view::{
+    Class, EchoMemory, GoalView, Hazard, Look, Memory, Odometer, Pose, View, Witness,
+};
 use sidestep_spec::view as promise;
 
 /// The configuration of parameters that are known to be good: checked as this is compiled.
@@ -159,6 +161,7 @@ pub fn clear_view() -> View<1> {
             stuck: false,
         }],
         obstacle: None,
+        ahead: Length::MAX,
         room: [Length::MAX; 2],
         beside: [Length::MAX; 2],
         base: BaseStatus {
@@ -205,6 +208,7 @@ pub fn any_view() -> View<1> {
         } else {
             None
         },
+        ahead: any_length(),
         room: [any_length(), any_length()],
         beside: [any_length(), any_length()],
         base: BaseStatus {
@@ -217,14 +221,24 @@ pub fn any_view() -> View<1> {
 }
 
 /// A look of a robot that stands or has moved, a time after the start.
-fn look(measured: Option<i32>, at: u64, odometer: Odometer, covered: bool) -> Look {
+fn look(measured: Option<i32>, at: u64, odometer: Odometer, witness: Witness) -> Look {
     Look {
         measured,
         taken_at: Instant(at),
         now: Instant(at),
         odometer,
         pose: None,
-        covered,
+        witness,
+    }
+}
+
+/// Whatever other sonars say, but for having heard the thing: then it is theirs.
+fn any_witness() -> Witness {
+    Witness {
+        covered: kani::any(),
+        heard_there: false,
+        known_still: kani::any(),
+        on_wall: kani::any(),
     }
 }
 
@@ -234,7 +248,7 @@ fn any_range() -> Option<i32> {
 
 /// An echo that is nearer counts at once; one reading that is farther, or is no echo, frees no
 /// more than motion and scatter explain. Any two ranges up to 4 m or none; at once, a tenth and half a
-/// second apart; a robot at rest, Pioneer preset.
+/// second apart, whatever other sonars say short of hearing it; a robot at rest, Pioneer preset.
 //= view.INV-2
 //= view.INV-3
 #[cfg_attr(kani, kani::proof)]
@@ -249,9 +263,9 @@ pub fn echoes_are_held() {
     let (first, second) = (any_range(), any_range());
     let gap = [0, 100, 500][kani::any::<u8>() as usize % 3];
     let start = Odometer::default();
-    let before = memory.update(&look(first, 1000, start, true), sonar, &config);
+    let before = memory.update(&look(first, 1000, start, any_witness()), sonar, &config);
     let later = 1000 + gap as u64;
-    let after = memory.update(&look(second, later, start, true), sonar, &config);
+    let after = memory.update(&look(second, later, start, any_witness()), sonar, &config);
     if let Some(range) = second {
         assert!(promise::nearer_counts(after.range, range));
     }
@@ -285,13 +299,17 @@ pub fn nothing_is_forgotten() {
     let turned = super::shield::any_in(0, 1_000);
     let range = super::shield::any_in(0, 10_000);
     let start = Odometer::default();
-    let before = memory.update(&look(Some(range), 1000, start, true), sonar, &config);
+    let before = memory.update(
+        &look(Some(range), 1000, start, any_witness()),
+        sonar,
+        &config,
+    );
     let odometer = Odometer {
         way: [ahead, back].map(i64::from),
         turned: i64::from(turned),
     };
     let later = 1000 + gap as u64;
-    let after = memory.update(&look(None, later, odometer, kani::any()), sonar, &config);
+    let after = memory.update(&look(None, later, odometer, any_witness()), sonar, &config);
     assert!(promise::nothing_forgotten(
         [after.age, after.way[0], after.way[1], after.turned].map(i64::from),
         [gap, ahead, back, turned].map(i64::from)

@@ -9,7 +9,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::Sighting;
-use crate::quantity::{Angle, Length, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Instant, Length, OutOfRange, Speed, in_range, within};
 use crate::track::Obstacle;
 use crate::view::View;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -50,6 +50,7 @@ pub fn lateral_speed(sighting: &Sighting, speed: Speed, heading: Angle) -> Resul
 
 /// S1 E2's two terms, the speed seen and the robot's own (signed) share, put together so that the
 /// result is a bound whichever side the obstacle comes from (triangle inequality, ER-S1-07).
+//= avoid.INV-2
 #[must_use]
 pub fn lateral_bound(seen: f32, own: f32) -> f32 {
     seen + own.abs()
@@ -59,6 +60,8 @@ pub fn lateral_bound(seen: f32, own: f32) -> f32 {
 ///
 /// v_o = min(v_o,max, E2/cos θ_o) for θ_o in [0, 60°]; v_o,max, saturated, for every other θ_o and
 /// for every sighting that is not usable. Total: any bit pattern gives a speed in [0, v_o,max].
+//= avoid.INV-1
+//= avoid.INV-3
 #[must_use]
 pub fn obstacle_speed(
     sighting: &Sighting,
@@ -91,6 +94,7 @@ pub fn obstacle_speed(
 ///
 /// # Errors
 /// [`OutOfRange`] if the angle is not in [0, 2π].
+//= avoid.INV-14
 pub fn image_direction(global_orientation: f32) -> Result<(f32, bool), OutOfRange> {
     let orientation = in_range(
         "global orientation",
@@ -160,6 +164,7 @@ pub fn contact_time_bound(
 
 /// Quotient of two numbers ≥ 0 that are not NaN: `None` if the divisor is zero, or so small that
 /// the quotient is not finite.
+//= avoid.INV-4
 fn quotient(dividend: f32, divisor: f32) -> Option<f32> {
     if divisor > 0.0 {
         let quotient = dividend / divisor;
@@ -176,6 +181,7 @@ pub struct QuarterTurns(f32);
 
 impl QuarterTurns {
     /// S1 E5: Δθ = (π/2)(k_θ/d_o), at most half a turn; half a turn at distance 0.
+    //= avoid.INV-6
     #[must_use]
     pub fn at_distance(distance: Length, turn_distance: Length) -> Self {
         if distance.get() * 2.0 <= turn_distance.get() {
@@ -217,8 +223,18 @@ pub enum Side {
 }
 
 impl Side {
+    /// The other side.
+    #[must_use]
+    pub const fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
     /// The side away from an obstacle at `bearing` from the reference heading. Straight ahead
     /// (or unknown) it is the side with more measured clearance, and left on a tie.
+    //= avoid.INV-7
     #[must_use]
     pub fn away_from(bearing: Angle, clearance_left: Length, clearance_right: Length) -> Self {
         if bearing.get() > 0.0 {
@@ -233,6 +249,7 @@ impl Side {
 
 /// S1 E5: heading of the maneuver, θ_m = θ_ref + σ·Δθ, wrapped. The reference is the goal heading
 /// latched when the maneuver began, not the current heading (ER-S1-03).
+//= avoid.INV-8
 #[must_use]
 pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Angle {
     match side {
@@ -242,6 +259,7 @@ pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Ang
 }
 
 /// S1 E7: speed of the maneuver, v_R = v_max(1 − |½ − |Δθ|/π|), in [v_max/2, v_max].
+//= avoid.INV-9
 #[must_use]
 pub fn maneuver_speed(speed_max: Speed, turn: QuarterTurns) -> Speed {
     let half = turn.get() / 2.0;
@@ -260,6 +278,7 @@ pub enum Arrival {
 }
 
 /// S1 A1: being near something is not having arrived.
+//= avoid.INV-12
 #[must_use]
 pub fn arrival(
     front: Length,
@@ -331,6 +350,8 @@ pub struct Situation {
 
 /// M1: the mode that follows `mode`. A guard comes before everything else; for an unchanging
 /// situation the machine is at rest after at most two steps.
+//= avoid.INV-10
+//= avoid.INV-11
 #[must_use]
 pub fn next_mode(mode: Mode, situation: &Situation, config: &Config) -> Mode {
     if mode == Mode::Arrived || situation.at_goal {
@@ -392,7 +413,13 @@ pub fn next_mode(mode: Mode, situation: &Situation, config: &Config) -> Mode {
 struct Latch {
     reference: Angle,
     side: Side,
+    /// Stopped, it looks at its goal for a change.
+    facing_goal: bool,
 }
+
+/// How long a stopped robot looks one way, in ms, before it looks another: E5's heading, the goal,
+/// E5's heading on the other side, and so on.
+const LOOK_TIME: u64 = 2500;
 
 /// An obstacle that comes nearer no faster than this, in m/s, stands still: sonar noise over the
 /// time of a trend looks like this much.
@@ -409,6 +436,8 @@ pub struct Avoid {
     latch: Option<Latch>,
     /// Ticks in a row in which the obstacle receded.
     receding: u32,
+    /// Since when a stopped robot has looked where it looks.
+    looking_since: Option<Instant>,
 }
 
 impl Avoid {
@@ -420,6 +449,7 @@ impl Avoid {
             mode: Mode::Cruise,
             latch: None,
             receding: 0,
+            looking_since: None,
         }
     }
 
@@ -440,21 +470,25 @@ impl Avoid {
             aligned: heading_error.get().abs() <= self.config.alignment,
             at_goal: view.goal.distance <= self.config.goal_tolerance,
         };
-        if let Some(obstacle) = &view.obstacle {
+        if let Some(obstacle) = self.in_the_way(view) {
             situation.corridor_free = !self.in_corridor(obstacle, view, view.goal.heading);
-            // What is seen to stand still beside the way to the goal is no obstacle to it.
-            let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
-            if !situation.corridor_free || moving || !obstacle.visible {
-                situation.distance = Some(obstacle.distance);
-                // Receding that is not confirmed yet is neither closing nor gone.
-                let confirmed = self.receding >= self.config.confirm_samples as u32;
-                situation.trend = match obstacle.trend {
-                    Trend::Receding if !confirmed => Trend::Steady,
-                    trend => trend,
-                };
-            }
+            situation.distance = Some(obstacle.distance);
+            // Receding that is not confirmed yet is neither closing nor gone.
+            let confirmed = self.receding >= self.config.confirm_samples as u32;
+            situation.trend = match obstacle.trend {
+                Trend::Receding if !confirmed => Trend::Steady,
+                trend => trend,
+            };
         }
         situation
+    }
+
+    /// The obstacle, unless it is seen to stand still beside the way to the goal: then it is none.
+    fn in_the_way<'a, const N: usize>(&self, view: &'a View<N>) -> Option<&'a Obstacle> {
+        view.obstacle.as_ref().filter(|obstacle| {
+            let moving = obstacle.trend != Trend::Unknown && obstacle.speed.value.get() > STILL;
+            moving || !obstacle.visible || self.in_corridor(obstacle, view, view.goal.heading)
+        })
     }
 
     /// The obstacle is ahead in direction `heading`, within the corridor the robot would sweep.
@@ -481,7 +515,7 @@ impl Avoid {
 
     /// Holds reference and side of a maneuver from its beginning to its end.
     fn hold_latch<const N: usize>(&mut self, view: &View<N>) {
-        match (self.mode, &view.obstacle) {
+        match (self.mode, self.in_the_way(view)) {
             (Mode::Cruise | Mode::Reorient | Mode::Arrived, _) => self.latch = None,
             // A robot at rest can wait and see what it is that it turns away from.
             (Mode::Stop, Some(obstacle))
@@ -493,9 +527,43 @@ impl Avoid {
                 self.latch = Some(Latch {
                     reference,
                     side: Side::away_from(bearing, left, right),
+                    facing_goal: false,
                 });
             }
             (Mode::Maneuver | Mode::Stop, _) => {}
+        }
+    }
+
+    /// Makes a robot look round that cannot go where it looks.
+    fn look_round<const N: usize>(&mut self, view: &View<N>) {
+        let stuck = match self.mode {
+            Mode::Stop => true,
+            Mode::Maneuver => self.pace(view) == 0.0,
+            _ => false,
+        };
+        let Some(latch) = self.latch.as_mut().filter(|_| stuck) else {
+            self.looking_since = None;
+            return;
+        };
+        let since = *self.looking_since.get_or_insert(view.now);
+        if view.now.since(since).is_some_and(|time| time >= LOOK_TIME) {
+            if latch.facing_goal {
+                latch.side = latch.side.other();
+            }
+            latch.facing_goal = !latch.facing_goal;
+            self.looking_since = Some(view.now);
+        }
+    }
+
+    /// The share of its speed that a maneuver has room for straight ahead: none at d_n, where there
+    /// still is room to turn, all of it at d_safe.
+    fn pace<const N: usize>(&self, view: &View<N>) -> f32 {
+        let (near, safe) = (self.config.near_distance, self.config.safe_distance);
+        if view.ahead.get() >= safe {
+            1.0
+        } else {
+            // Not reached with d_n = d_safe, unless there is nothing left.
+            ((view.ahead.get() - near) / (safe - near).max(f32::MIN_POSITIVE)).max(0.0)
         }
     }
 
@@ -503,12 +571,16 @@ impl Avoid {
     fn target<const N: usize>(&self, view: &View<N>) -> (Angle, f32) {
         let config = &self.config;
         let cruise = config.cruise_speed;
-        let around = match (&view.obstacle, self.latch) {
+        let around = match (self.in_the_way(view), self.latch) {
             (Some(obstacle), Some(latch)) if obstacle.distance.get() < config.safe_distance => {
                 let reach = Length::metres(config.turn_distance).unwrap_or(Length::ZERO);
                 let turn = QuarterTurns::at_distance(obstacle.distance, reach);
                 let speed_max = Speed::metres_per_second(config.speed_max).unwrap_or(Speed::ZERO);
-                let heading = maneuver_heading(latch.reference, latch.side, turn);
+                let heading = if latch.facing_goal {
+                    view.goal.heading
+                } else {
+                    maneuver_heading(latch.reference, latch.side, turn)
+                };
                 Some((heading, maneuver_speed(speed_max, turn).get(), obstacle))
             }
             _ => None,
@@ -519,7 +591,8 @@ impl Avoid {
             // past the obstacle, and only while it sees it (ER-S1-20, ER-X1).
             (Mode::Maneuver, Some((heading, speed, obstacle))) => {
                 let past = obstacle.visible && !self.in_corridor(obstacle, view, view.pose.heading);
-                (heading, if past { speed } else { speed.min(cruise) })
+                let speed = if past { speed } else { speed.min(cruise) };
+                (heading, speed * self.pace(view))
             }
             (Mode::Maneuver, None) => (view.goal.heading, cruise / 2.0),
             (Mode::Reorient, _) => {
@@ -527,12 +600,15 @@ impl Avoid {
                 (view.goal.heading, if seen { cruise } else { cruise / 2.0 })
             }
             (Mode::Stop, Some((heading, _, _))) => (heading, 0.0),
-            (Mode::Stop | Mode::Arrived, _) => (view.pose.heading, 0.0),
+            // With nothing to turn away from, the goal is where to look.
+            (Mode::Stop, None) => (view.goal.heading, 0.0),
+            (Mode::Arrived, _) => (view.pose.heading, 0.0),
         }
     }
 }
 
 impl<const N: usize> Law<N> for Avoid {
+    //= avoid.INV-13
     fn advise(&mut self, view: &View<N>) -> Advice {
         let receding = view
             .obstacle
@@ -544,13 +620,14 @@ impl<const N: usize> Law<N> for Avoid {
         };
         self.mode = next_mode(self.mode, &self.situation(view), &self.config);
         self.hold_latch(view);
+        self.look_round(view);
         let (heading, speed) = self.target(view);
         let error = heading.minus(view.pose.heading).get();
         let turn_rate_max = self.config.turn_rate_max;
         Advice {
             // First turn, then go.
             speed: speed * (1.0 - error.abs() / FRAC_PI_2).max(0.0),
-            turn_rate: (self.config.heading_gain * error).clamp(-turn_rate_max, turn_rate_max),
+            turn_rate: within(self.config.heading_gain * error, turn_rate_max),
         }
     }
 

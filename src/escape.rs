@@ -8,7 +8,7 @@
 use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
-use crate::quantity::{Angle, Instant};
+use crate::quantity::{Angle, Instant, within};
 use crate::ring::Ring;
 use crate::shield::{Guard, Motion};
 use crate::view::View;
@@ -140,7 +140,7 @@ impl<L, const N: usize> Escape<L, N> {
         let error = attempt.heading.minus(view.pose.heading).get();
         attempt.driving |= error.abs() <= self.config.alignment;
         let limit = self.config.turn_rate_max / 2.0;
-        let turn_rate = (self.config.heading_gain * error).clamp(-limit, limit);
+        let turn_rate = within(self.config.heading_gain * error, limit);
         if attempt.driving {
             return Some(Advice {
                 speed: self.config.cruise_speed / 2.0,

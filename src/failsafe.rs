@@ -34,6 +34,10 @@ impl Action {
     ];
 
     /// The more severe of two.
+    //= failsafe.INV-1
+    //= failsafe.INV-2
+    //= failsafe.INV-3
+    //= failsafe.INV-4
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         self.max(other)
@@ -414,6 +418,7 @@ impl StopReason {
 
     /// The cause that counts of two: the one with the more severe action, the first if both have
     /// the same.
+    //= failsafe.INV-6
     #[must_use]
     pub fn worse(first: Option<Self>, second: Option<Self>) -> Option<Self> {
         match (first, second) {

@@ -271,6 +271,7 @@ impl Frame {
     /// # Errors
     /// [`CommissioningError`] if the person did not stand 0.3 m to 10 m beside the axis, or if camera
     /// or gesture mean the other side.
+    //= interact.INV-6
     pub fn commissioned(self, trial: &Trial) -> Result<Commissioned, CommissioningError> {
         let aside = in_range(
             "lateral place in the trial",
@@ -391,6 +392,30 @@ pub struct Path {
 }
 
 impl Path {
+    /// A path from a point (m) in a direction, of a length in m, to be driven at a speed in m/s after
+    /// a turn at a rate in rad/s.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if a coordinate is not within 10 km, or length, speed or turn rate not in 0 to
+    /// 100 m, 0 to 10 m/s and 0 to 20 rad/s.
+    pub fn new(
+        from: Vector2<f32>,
+        heading: Angle,
+        length: f32,
+        speed: f32,
+        turn_rate: f32,
+    ) -> Result<Self, OutOfRange> {
+        in_range("x of a path", from.x, -1e4, 1e4, "m")?;
+        in_range("y of a path", from.y, -1e4, 1e4, "m")?;
+        Ok(Self {
+            from,
+            heading,
+            length: in_range("length of a path", length, 0.0, 100.0, "m")?,
+            speed: in_range("speed of a path", speed, 0.0, 10.0, "m/s")?,
+            turn_rate: in_range("turn rate of a path", turn_rate, 0.0, 20.0, "rad/s")?,
+        })
+    }
+
     /// Where it begins, m.
     #[must_use]
     pub const fn from(&self) -> Vector2<f32> {
@@ -565,6 +590,9 @@ pub struct Situation {
 }
 
 /// M2: the state that follows. Total; a stop comes before everything but having arrived.
+//= interact.INV-2
+//= interact.INV-4
+//= interact.INV-8
 #[must_use]
 pub fn next_state(state: &State, now: &Situation) -> State {
     if *state == State::Arrived || now.at_goal {
@@ -629,6 +657,8 @@ pub enum Drive {
 
 /// What a state asks for in a situation. Forward and backward are a dead man's switch: they last no
 /// longer than the gesture, the master and the camera's picture.
+//= interact.INV-1
+//= interact.INV-3
 #[must_use]
 pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: bool) -> Drive {
     if now.stop_shown || !now.camera {
@@ -1003,6 +1033,7 @@ impl Interact {
     }
 
     /// Lets go of whoever has been missed for long enough, or not been seen for too long (ER-X1).
+    //= interact.INV-7
     fn forget(&mut self, now: Instant) {
         let (gone, hold) = (self.settings.gone_time, self.settings.person_hold_time);
         let mut i = 0;
@@ -1240,13 +1271,14 @@ impl Interact {
             1.0
         };
         let turn_rate = valley.turn_rate(geometry, self.settings.turn_rate_max);
-        Some(Path {
-            from: view.pose.position,
-            heading: view.pose.heading.plus(valley.turn()),
-            length: valley.length,
-            speed: valley.speed(geometry, speed_max).scaled(crowd).get(),
-            turn_rate: turn_rate.abs(),
-        })
+        Path::new(
+            view.pose.position,
+            view.pose.heading.plus(valley.turn()),
+            valley.length,
+            valley.speed(geometry, speed_max).scaled(crowd).get(),
+            turn_rate.abs(),
+        )
+        .ok()
     }
 
     /// Goes on to the next state, and says what there is to say.
@@ -1291,7 +1323,9 @@ impl Interact {
     }
 
     /// What is asked for, as speed and turn rate.
-    fn advice<const N: usize>(&self, drive: Drive, view: &View<N>) -> Advice {
+    //= interact.INV-5
+    #[must_use]
+    pub fn advice<const N: usize>(&self, drive: Drive, view: &View<N>) -> Advice {
         let config = &self.config;
         let unseen = if self.somebody_unseen(view) {
             self.settings.unseen_share
@@ -1311,17 +1345,18 @@ impl Interact {
             Drive::ToGoal => towards(view.goal.heading, config.cruise_speed, config.turn_rate_max),
             Drive::Turn(path) => Advice {
                 speed: 0.0,
-                ..towards(path.heading, 0.0, path.turn_rate)
+                ..towards(
+                    path.heading,
+                    0.0,
+                    path.turn_rate.min(self.settings.turn_rate_max),
+                )
             },
             Drive::Along(path) => {
                 // Back to the line where the robot has left it.
                 let [_, aside] = path.coordinates(view.pose.position);
                 let back = Angle::radians((-2.0 * aside).clamp(-0.3, 0.3)).unwrap_or(Angle::ZERO);
-                towards(
-                    path.heading.plus(back),
-                    path.speed,
-                    self.settings.turn_rate_max,
-                )
+                let speed = path.speed.min(self.settings.speed_max);
+                towards(path.heading.plus(back), speed, self.settings.turn_rate_max)
             }
             Drive::Forward(bearing) => {
                 let limit = self.settings.turn_rate_max;

@@ -1,7 +1,7 @@
 //! Differential-drive kinematics, S2 E1 to E5, with the yaw relation the paper leaves out.
 
 use crate::math;
-use crate::quantity::{Angle, OutOfRange, in_range};
+use crate::quantity::{Angle, OutOfRange, in_range, within};
 use nalgebra::Vector2;
 
 /// Forward speed and turn rate of the robot.
@@ -53,6 +53,9 @@ impl DifferentialDrive {
     ///
     /// # Errors
     /// [`OutOfRange`] if a wheel rate is not within ±1000 rad/s.
+    //= kinematics.INV-1
+    //= kinematics.INV-2
+    //= kinematics.INV-5
     pub fn twist(&self, wheels: WheelRates) -> Result<Twist, OutOfRange> {
         let right = in_range("right wheel rate", wheels.right, -1e3, 1e3, "rad/s")?;
         let left = in_range("left wheel rate", wheels.left, -1e3, 1e3, "rad/s")?;
@@ -66,6 +69,8 @@ impl DifferentialDrive {
     ///
     /// # Errors
     /// [`OutOfRange`] if the speed is not within ±10 m/s or the turn rate not within ±20 rad/s.
+    //= kinematics.INV-1
+    //= kinematics.INV-5
     pub fn wheel_rates(&self, twist: Twist) -> Result<WheelRates, OutOfRange> {
         let speed = in_range("speed", twist.speed, -10.0, 10.0, "m/s")?;
         let turn_rate = in_range("turn rate", twist.turn_rate, -20.0, 20.0, "rad/s")?;
@@ -83,6 +88,8 @@ impl WheelRates {
     ///
     /// # Errors
     /// [`OutOfRange`] if a rate is not within ±10⁶ rad/s or the limit not in 0 to 1000 rad/s.
+    //= kinematics.INV-3
+    //= kinematics.INV-4
     pub fn limited(self, limit: f32) -> Result<Self, OutOfRange> {
         let limit = in_range("wheel rate limit", limit, 0.0, 1e3, "rad/s")?;
         let right = in_range("right wheel rate", self.right, -1e6, 1e6, "rad/s")?;
@@ -93,7 +100,7 @@ impl WheelRates {
         }
         let factor = limit / fastest;
         // The product can round above the limit.
-        let scale = |rate: f32| (rate * factor).clamp(-limit, limit);
+        let scale = |rate: f32| within(rate * factor, limit);
         Ok(Self {
             right: scale(right),
             left: scale(left),

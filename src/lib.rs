@@ -37,6 +37,7 @@ pub mod shield;
 pub mod track;
 pub mod valley;
 pub mod view;
+pub mod wall;
 
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]

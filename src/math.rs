@@ -8,6 +8,7 @@
 ///
 /// Contract `math.INV-1`: the result is in [−1, 1] for every input; where the angle is not
 /// finite the result is 0.
+//= math.INV-1
 #[must_use]
 pub fn sin(angle: f32) -> f32 {
     if angle.is_finite() {
@@ -21,6 +22,7 @@ pub fn sin(angle: f32) -> f32 {
 ///
 /// Contract `math.INV-2`: the result is in [−1, 1] for every input, and at least ½ less one part
 /// in 10⁶ for |angle| ≤ π/3; where the angle is not finite the result is 0.
+//= math.INV-2
 #[must_use]
 pub fn cos(angle: f32) -> f32 {
     if angle.is_finite() {
@@ -34,6 +36,7 @@ pub fn cos(angle: f32) -> f32 {
 ///
 /// Contract `math.INV-3`: for x in [0, f32::MAX] the result r is finite, 0 ≤ r, r ≤ max(1, x) and
 /// r ≥ min(1, x); for every other x, NaN too, it is 0.
+//= math.INV-3
 #[must_use]
 pub fn sqrt(x: f32) -> f32 {
     if x > 0.0 && x.is_finite() {
@@ -47,6 +50,7 @@ pub fn sqrt(x: f32) -> f32 {
 ///
 /// Contract `math.INV-4`: the result is in [−π, π] for finite x and y; for every other input it
 /// is 0.
+//= math.INV-4
 #[must_use]
 pub fn atan2(y: f32, x: f32) -> f32 {
     if y.is_finite() && x.is_finite() {
@@ -60,6 +64,7 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 ///
 /// Contract `math.INV-5`: for finite x ≥ 1 the result is in [0, x − 1]; for every other x, NaN too,
 /// it is 0.
+//= math.INV-5
 #[must_use]
 pub fn ln(x: f32) -> f32 {
     if x >= 1.0 && x.is_finite() {

@@ -48,6 +48,7 @@ impl Monitor {
     /// Takes in a measured speed (mm/s, magnitude) and when it was measured. True once it has been
     /// above the bound three times in a row: the base brakes more weakly, or is faster, than
     /// promised.
+    //= monitor.INV-3
     pub fn measured(&mut self, speed: i32, at: Instant, limits: &Limits) -> bool {
         if self.measured_at.is_some_and(|before| at <= before) {
             return false;
@@ -63,6 +64,8 @@ impl Monitor {
 
     /// Takes in what the base is told at `now` (mm/s, magnitude). The ceiling falls at the braking
     /// bound once the command has had its reaction time.
+    //= monitor.INV-1
+    //= monitor.INV-2
     pub fn told(&mut self, speed: i32, now: Instant, limits: &Limits) {
         let from = match self.last {
             Some(last) if last > self.holds_until => last,

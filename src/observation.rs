@@ -93,6 +93,7 @@ pub enum SonarReading {
 /// `range_min` is the blanking distance and `range_max` where "no echo" begins, both in metres
 /// with 0 ≤ range_min < range_max; `age_max` is in milliseconds. Readings beyond twice
 /// `range_max` are invalid: sensors report saturation near their limit, not far past it.
+//= view.INV-1
 #[must_use]
 pub fn classify(
     sample: Option<SonarSample>,

@@ -174,6 +174,18 @@ impl Angle {
     }
 }
 
+/// `value`, cut off at ±`limit`. Unlike `clamp` it cannot panic, whatever the limit; what is no number
+/// stays so.
+pub(crate) const fn within(value: f32, limit: f32) -> f32 {
+    if value > limit {
+        limit
+    } else if value < -limit {
+        -limit
+    } else {
+        value
+    }
+}
+
 /// Wraps `angle` (finite, in [−3π, 3π]) to (−π, π].
 fn wrap(angle: f32) -> f32 {
     let wrapped = if angle > PI {

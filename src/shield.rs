@@ -211,12 +211,14 @@ impl Limits {
 
     /// SH.2: the robot's own way to rest, in mm, if for one reaction time it is no faster than
     /// `speed` (mm/s, 0 to 12,000) and brakes then: v·ε + v²/2b.
+    //= shield.INV-2
     #[must_use]
     pub const fn way_to_rest(&self, speed: i32) -> i32 {
         divide_up(speed * self.reaction_time, 1000) + divide_up(speed * speed, 2 * self.braking)
     }
 
     /// SH.2: the time to rest, in ms, from `speed` (mm/s, 0 to 12,000): ε + v/b.
+    //= shield.INV-2
     #[must_use]
     pub const fn time_to_rest(&self, speed: i32) -> i32 {
         self.reaction_time + divide_up(1000 * speed, self.braking)
@@ -252,6 +254,9 @@ impl Limits {
     }
 
     /// SH.3 and SH.6: driving and turning both end before contact with the thing.
+    //= shield.INV-3
+    //= shield.INV-12
+    //= shield.INV-14
     #[must_use]
     pub fn fits(&self, hazard: &Hazard, closing: &Closing, plan: &Plan) -> bool {
         let there = 1000 * i64::from(hazard.clearance);
@@ -266,6 +271,8 @@ impl Limits {
 
     /// SH.4: contact is possible within the stop time: t_lb = distance/closing ≤ T, with the
     /// distance left before contact in mm (0 at least) and the closing speed in mm/s.
+    //= shield.INV-7
+    //= shield.INV-8
     #[must_use]
     pub const fn contact_within_stop_time(&self, distance: i32, closing: i32) -> bool {
         distance as i64 * 1000 <= self.stop_time as i64 * closing as i64
@@ -322,6 +329,7 @@ impl Guard {
 
     /// What the robot may do from now until it rests, if it is told `speed` and `turn_rate` (mm/s,
     /// mrad/s) for one reaction time and rest then. None if it is faster than it may ever be told.
+    //= shield.INV-11
     #[must_use]
     pub fn plan(&self, speed: i32, turn_rate: i32, motion: &Motion) -> Option<Plan> {
         let told = speed.saturating_abs().min(12_000);
@@ -357,6 +365,10 @@ impl Guard {
     /// reaches from `last` and for which there is room; rest if there is none. The curvature is
     /// that of the advice or less. The advice is at most 10 m/s and 20 rad/s either way; the base
     /// has `elapsed` ms (0 to ε each) to gain speed and turn rate.
+    //= shield.INV-1
+    //= shield.INV-6
+    //= shield.INV-9
+    //= shield.INV-15
     #[must_use]
     pub fn admissible<const N: usize>(
         &self,
@@ -387,11 +399,10 @@ impl Guard {
         let step = limits.turn_acceleration * elapsed / 1000;
         let wish = advised
             .turn_rate
-            .clamp(
-                last.turn_rate.min(0).saturating_sub(step),
-                last.turn_rate.max(0).saturating_add(step),
-            )
-            .clamp(-limits.turn_rate_max, limits.turn_rate_max);
+            .max(last.turn_rate.min(0).saturating_sub(step))
+            .min(last.turn_rate.max(0).saturating_add(step))
+            .max(-limits.turn_rate_max)
+            .min(limits.turn_rate_max);
         let turn_rate = greatest(12, wish.abs(), |rate| no_tighter(speed, rate, advised));
 
         // That, and smaller ones by 64ths: speeds rounded up, turn rates down.
@@ -425,6 +436,7 @@ impl Guard {
 
 /// Turning at `turn_rate` while driving at `speed` bends the path no tighter than advised:
 /// |ω|/|v| ≤ |ω*|/|v*|, multiplied out.
+//= shield.INV-13
 #[must_use]
 pub const fn no_tighter(speed: i32, turn_rate: i32, advised: Twist) -> bool {
     turn_rate.abs() * advised.speed.abs() <= advised.turn_rate.abs() * speed.abs()
@@ -614,6 +626,7 @@ impl Shield {
 
     /// Somebody has looked at what latched the stop, and lets the robot go on once nothing demands
     /// a stop any more. What is still wrong latches it again.
+    //= failsafe.INV-5
     pub fn reset(&mut self) {
         self.latched = false;
         self.overdue_since = None;
@@ -657,6 +670,7 @@ impl Shield {
     }
 
     /// Stops for `reason`: the command is rest from now on.
+    //= failsafe.INV-5
     fn halt(&mut self, reason: StopReason, now: Instant) -> Option<StopReason> {
         self.clear = 0;
         // Another cause in between does not make what is overdue arrive: only a clear tick does.
@@ -674,6 +688,7 @@ impl Shield {
     }
 
     /// What demands a stop, the worst of it, with `margin` (mm) added to every distance needed.
+    //= shield.INV-5
     fn demand<const N: usize>(
         &self,
         view: &View<N>,
@@ -805,6 +820,8 @@ impl Shield {
 
     /// Turns a law's advice into a command, or into rest. To be called once per tick, after
     /// [`assess`](Self::assess) judged the same view. Any bit pattern of advice is allowed.
+    //= shield.INV-4
+    //= shield.INV-5
     pub fn admit<const N: usize>(
         &mut self,
         advice: Advice,
@@ -914,6 +931,7 @@ fn whole(advice: Advice) -> Option<Twist> {
 /// The greatest number in 0..=`wish` that is admitted, where admission only gets harder with size;
 /// 0 if none is. Looks at `steps` numbers (up to 30), whatever `admitted` says, and finds those
 /// below 2 to the power of `steps`.
+//= shield.INV-10
 pub fn greatest(steps: u32, wish: i32, admitted: impl Fn(i32) -> bool) -> i32 {
     let mut found = 0;
     let mut step = 1 << steps.min(30);

@@ -50,6 +50,9 @@ pub(crate) struct Track {
     position: Vector2<f32>,
     distance: Length,
     sonar: usize,
+    /// Of that sonar, as in [`Echo`].
+    contact_range: i32,
+    inset: f32,
     seen: Instant,
     /// Ticks in which a sonar saw past its place since it was seen there.
     absent: u32,
@@ -57,10 +60,26 @@ pub(crate) struct Track {
     history: [Option<(Instant, f32)>; HISTORY],
 }
 
+/// What an obstacle is judged by.
+pub(crate) struct Look<'a> {
+    pub(crate) now: Instant,
+    pub(crate) pose: &'a Pose,
+    /// The robot's own speed, m/s.
+    pub(crate) speed: f32,
+    pub(crate) sighting: Option<&'a Sighting>,
+    /// The sonar that saw it last has something still in front of it.
+    pub(crate) still: bool,
+}
+
 /// One echo, placed.
 #[derive(Clone, Copy)]
 struct Echo {
+    /// Which sonar heard it.
     sonar: usize,
+    /// Its contact range, mm.
+    contact_range: i32,
+    /// How far it is from the robot's centre, m.
+    inset: f32,
     distance: Length,
     position: Vector2<f32>,
 }
@@ -73,6 +92,8 @@ impl Track {
             position: echo.position,
             distance: echo.distance,
             sonar: echo.sonar,
+            contact_range: echo.contact_range,
+            inset: echo.inset,
             seen: now,
             absent: 0,
             history,
@@ -97,12 +118,11 @@ impl Track {
     }
 
     /// The same obstacle, not seen this time: its distance follows from where it was.
-    fn unseen<const N: usize>(&self, seen_past: bool, pose: &Pose, ring: &Ring<N>) -> Self {
+    fn unseen(&self, seen_past: bool, pose: &Pose) -> Self {
         let offset = math::norm(self.position - pose.position);
-        let inset = math::norm(ring.sonars()[self.sonar].position);
         Self {
             absent: self.absent.saturating_add(u32::from(seen_past)),
-            distance: Length::metres((offset - inset).max(0.0)).unwrap_or(self.distance),
+            distance: Length::metres((offset - self.inset).max(0.0)).unwrap_or(self.distance),
             ..*self
         }
     }
@@ -120,16 +140,14 @@ impl Track {
         None
     }
 
+    /// The sonar that saw it last.
+    pub(crate) const fn sonar(&self) -> usize {
+        self.sonar
+    }
+
     /// What the law is told of the obstacle.
-    pub(crate) fn obstacle<const N: usize>(
-        &self,
-        now: Instant,
-        pose: &Pose,
-        speed: f32,
-        sighting: Option<&Sighting>,
-        ring: &Ring<N>,
-        config: &Config,
-    ) -> Obstacle {
+    pub(crate) fn obstacle(&self, look: &Look<'_>, config: &Config) -> Obstacle {
+        let Look { now, pose, .. } = *look;
         let offset = self.position - pose.position;
         let direction = Angle::radians(math::atan2(offset.y, offset.x)).unwrap_or(Angle::ZERO);
         let bearing = direction.minus(pose.heading);
@@ -139,17 +157,26 @@ impl Track {
             .since(self.seen)
             .is_some_and(|age| age <= milliseconds(config.sonar_age_max));
         let trend = match rate {
+            _ if visible && look.still => Trend::Steady,
             Some(rate) if visible && rate > TREND_RATE => Trend::Receding,
             Some(rate) if visible && rate < -TREND_RATE => Trend::Closing,
             Some(_) if visible => Trend::Steady,
             _ => Trend::Unknown,
         };
         let speed_max = Speed::metres_per_second(config.obstacle_speed_max).unwrap_or(Speed::MAX);
-        let estimate = seen_by_camera(sighting, now, speed, speed_max, config)
-            .unwrap_or_else(|| closing_speed(rate, speed * math::cos(bearing.get()), speed_max));
+        let own = look.speed * math::cos(bearing.get());
+        let estimate = match seen_by_camera(look, speed_max, config) {
+            Some(estimate) => estimate,
+            // What has agreed with the robot's own motion for so long does not move.
+            None if visible && look.still => ObstacleSpeed {
+                value: Speed::ZERO,
+                saturated: false,
+            },
+            None => closing_speed(rate, own, speed_max),
+        };
         Obstacle {
             distance: self.distance,
-            contact_range: ring.sonars()[self.sonar].contact_range,
+            contact_range: self.contact_range,
             direction,
             position: self.position,
             trend,
@@ -161,18 +188,13 @@ impl Track {
 }
 
 /// S1 E3 from a camera, if it saw something within the hold time.
-fn seen_by_camera(
-    sighting: Option<&Sighting>,
-    now: Instant,
-    speed: f32,
-    speed_max: Speed,
-    config: &Config,
-) -> Option<ObstacleSpeed> {
-    let sighting = sighting?;
-    let fresh = now
+fn seen_by_camera(look: &Look<'_>, speed_max: Speed, config: &Config) -> Option<ObstacleSpeed> {
+    let sighting = look.sighting?;
+    let fresh = look
+        .now
         .since(sighting.taken_at)
         .is_some_and(|age| age <= milliseconds(config.hold_time));
-    let robot_speed = Speed::metres_per_second(speed.abs()).ok()?;
+    let robot_speed = Speed::metres_per_second(look.speed.abs()).ok()?;
     // A camera that looks ahead sees across the direction of travel: θ_R is 90° to it.
     let heading = Angle::radians(FRAC_PI_2).ok()?;
     fresh.then(|| obstacle_speed(sighting, robot_speed, heading, speed_max))
@@ -214,16 +236,18 @@ pub(crate) fn follow<const N: usize>(
     let mut nearest: Option<Echo> = None;
     let mut matched: Option<(Echo, f32)> = None;
     let mut seen_past = false;
-    for (i, (reading, at)) in sonar.iter().zip(ring.sonars()).enumerate() {
+    for (i, ((reading, at), fresh)) in sonar.iter().zip(ring.sonars()).zip(fresh).enumerate() {
         let SonarReading::Echo(distance) = *reading else {
             continue;
         };
-        if !fresh[i] {
+        if !fresh {
             continue;
         }
         let point = at.position + at.axis * distance.get();
         let echo = Echo {
             sonar: i,
+            contact_range: at.contact_range,
+            inset: math::norm(at.position),
             distance,
             position: pose.to_world(point),
         };
@@ -248,7 +272,7 @@ pub(crate) fn follow<const N: usize>(
             _ => Some(old.seen_at(echo, now)),
         },
         (Some(old), None) => {
-            let old = old.unseen(seen_past, pose, ring);
+            let old = old.unseen(seen_past, pose);
             let gone = old.absent >= config.confirm_samples as u32;
             let expired = now
                 .since(old.seen)

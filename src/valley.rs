@@ -154,6 +154,7 @@ impl Scene {
     }
 
     /// Adds a person where there is room for one.
+    //= valley.INV-7
     fn insert(&mut self, person: Person) {
         let mut at = self.count.min(PEOPLE_MAX - 1);
         self.count = at + 1;
@@ -180,9 +181,9 @@ impl Scene {
 
 /// A person stands further left than another, or comes first by other numbers.
 fn before(one: &Person, other: &Person) -> bool {
-    let [one, other] = [one, other].map(|p| [p.lateral, p.depth, p.radius]);
+    let [one, other] = [one, other].map(|p| [p.lateral, p.depth, p.range, p.radius]);
     let mut i = 0;
-    while i < 2 && one[i] == other[i] {
+    while i < 3 && one[i] == other[i] {
         i += 1;
     }
     one[i] < other[i]
@@ -199,10 +200,10 @@ pub struct Geometry {
     view_tangent: f32,
 }
 
-/// Ways are planned by so much wider than they are checked (m)...
+/// Ways are planned by so much wider than they must be (m), so that the check does not refuse them.
 const PLANNED: f32 = 5e-5;
-/// ...and checked by so much wider than they must be: more than floats round within 20 m.
-const CHECKED: f32 = 1e-5;
+/// Ways are checked by so much wider than they must be (m): more than floats round within 20 m.
+pub const ROUNDING: f32 = 1e-5;
 
 impl Geometry {
     /// r_r and d in m, half the sensor's angle of view in radians (35° in the paper).
@@ -337,6 +338,7 @@ impl Geometry {
     /// The direction nearest to the region's own that passes everybody to the left of the region on
     /// their right, everybody to the right of it on their left, and stays in the seen space; as a
     /// sine. None if there is none.
+    //= valley.INV-3
     fn direction(&self, scene: &Scene, index: usize, region: &Region) -> Option<f32> {
         let reach = self.reach(region);
         let (mut least, mut most) = (-self.view_sine, self.view_sine);
@@ -401,6 +403,8 @@ impl Geometry {
 
     /// Whether a straight way may be taken: in the angle of view, and clear of every person. Asked
     /// last, so that what is accepted does not rest on how it was found.
+    //= valley.INV-1
+    //= valley.INV-6
     #[must_use]
     pub fn admits(&self, scene: &Scene, heading: Heading, length: f32) -> bool {
         if !(heading.sine.abs() <= self.view_sine && length > 0.0 && length <= 2.0 * FARTHEST) {
@@ -409,7 +413,7 @@ impl Geometry {
         let mut i = 0;
         while i < scene.count {
             let person = &scene.people[i];
-            let clearance = self.clearance(person) + CHECKED;
+            let clearance = self.clearance(person) + ROUNDING;
             if !keeps_clear([person.lateral, person.depth], clearance, heading, length) {
                 return false;
             }
@@ -433,6 +437,8 @@ impl Geometry {
     /// E25, E26: the share of the greatest speed for a valley `width` radians wide:
     /// log θ_r/log θ_max with both in degrees, 0 up to one degree and for what is no number, 1 from
     /// the whole angle of view on.
+    //= valley.INV-4
+    //= valley.INV-5
     #[must_use]
     pub fn share(&self, width: f32) -> f32 {
         let (width, whole) = (width.to_degrees(), 2.0 * self.view_half_angle.to_degrees());
@@ -498,6 +504,7 @@ pub struct Region {
 
 impl Region {
     /// E9: it belongs to the set V.
+    //= valley.INV-2
     #[must_use]
     pub fn is_wide_enough(&self) -> bool {
         self.available > self.least
@@ -627,6 +634,7 @@ impl Valleys {
     }
 
     /// Of the valleys in regions `from..to` the one nearest to a direction, the first of two.
+    //= valley.INV-8
     fn nearest(&self, aim: f32, from: usize, to: usize) -> Option<Valley> {
         let mut best: Option<(f32, Valley)> = None;
         let mut i = from;

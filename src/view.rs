@@ -13,6 +13,7 @@ use crate::quantity::{Angle, Instant, Length, in_range};
 use crate::ring::{Ring, Sonar};
 use crate::shield::{millimetres_down, millimetres_up, milliseconds};
 use crate::track::{self, Obstacle, Track};
+use crate::wall::{ACROSS, Wall};
 use nalgebra::Vector2;
 
 /// Where the robot is and which way it looks, in the odometry frame.
@@ -104,6 +105,8 @@ pub struct View<const N: usize> {
     pub hazard: [Hazard; N],
     /// The obstacle the law avoids, if there is one in sight or in memory.
     pub obstacle: Option<Obstacle>,
+    /// Least range held by the sonars that look within the angle of view of straight ahead.
+    pub ahead: Length,
     /// Free range to the left and to the right of straight ahead.
     pub room: [Length; 2],
     /// Distance from the robot's centre line to what stands right beside it, left and right.
@@ -125,6 +128,7 @@ pub struct Odometer {
 
 impl Odometer {
     /// Adds the way from one pose to the next.
+    //= view.INV-5
     #[must_use]
     pub fn advanced(self, from: &Pose, to: &Pose) -> Self {
         let offset = to.position - from.position;
@@ -241,6 +245,7 @@ impl<const N: usize> Memory<N> {
     /// # Errors
     /// The reason to stop if there is no usable odometry: without a pose there is no view. What
     /// the sonars saw is remembered all the same.
+    //= view.INV-4
     pub fn update(
         &mut self,
         observation: &Observation<N>,
@@ -266,24 +271,28 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             )
         });
+        let mut agrees = [false; N];
+        for (agrees, memory) in agrees.iter_mut().zip(&self.sonar) {
+            *agrees = memory.agreed > 0;
+        }
+        let walls = Wall::beside(&sonar, &agrees, ring, config);
+        let witnesses = self.witnesses(&sonar, observation, pose, ring, config);
         // What was there in the tick before has been looked at.
         let mut fresh = [false; N];
         let mut hazard = [Hazard::NONE; N];
         for i in 0..N {
             let taken_at = observation.sonar[i].map_or(now, |sample| sample.taken_at);
             fresh[i] = self.last.is_none_or(|last| taken_at > last);
-            let memory = &self.sonar[i];
             let look = Look {
                 measured: measured(sonar[i]),
                 taken_at,
                 now,
                 odometer: self.odometer,
                 pose,
-                covered: pose.is_some_and(|pose| {
-                    memory.place().is_some_and(|place| {
-                        is_looked_at(pose.to_robot(place), &sonar, ring, config)
-                    })
-                }),
+                witness: Witness {
+                    on_wall: is_wall(sonar[i], &ring.sonars()[i], &walls, config),
+                    ..witnesses[i]
+                },
             };
             hazard[i] = self.sonar[i].update(&look, &ring.sonars()[i], config);
         }
@@ -302,14 +311,16 @@ impl<const N: usize> Memory<N> {
         };
         track::follow(&mut self.track, &sonar, &fresh, &pose, now, ring, config);
         let obstacle = self.track.map(|track| {
-            track.obstacle(
+            let look = track::Look {
                 now,
-                &pose,
+                pose: &pose,
                 speed,
-                observation.sighting.as_ref(),
-                ring,
-                config,
-            )
+                sighting: observation.sighting.as_ref(),
+                still: hazard
+                    .get(track.sonar())
+                    .is_some_and(|hazard| hazard.class == Class::Still),
+            };
+            track.obstacle(&look, config)
         });
         Ok(View {
             now,
@@ -321,11 +332,58 @@ impl<const N: usize> Memory<N> {
             sonar,
             hazard,
             obstacle,
+            ahead: ahead(&hazard, ring, config),
             room: room(&sonar, ring, config),
             beside: beside(&sonar, ring, config),
             base: observation.base,
             guard: None,
         })
+    }
+}
+
+impl<const N: usize> Memory<N> {
+    /// What the other sonars' echoes say of what each holds, and of what each hears.
+    fn witnesses(
+        &self,
+        sonar: &[SonarReading; N],
+        observation: &Observation<N>,
+        pose: Option<Pose>,
+        ring: &Ring<N>,
+        config: &Config,
+    ) -> [Witness; N] {
+        let mut witnesses = [Witness::default(); N];
+        let Some(pose) = pose else {
+            return witnesses;
+        };
+        let least = math::cos(config.sonar_half_angle);
+        let scatter = SCATTER as f32 / 1000.0;
+        for i in 0..N {
+            let Some((place, seen)) = self.sonar[i].place() else {
+                continue;
+            };
+            let place = pose.to_robot(place);
+            let still = self.sonar[i].is_still(observation.now, config);
+            for j in 0..N {
+                let SonarReading::Echo(range) = sonar[j] else {
+                    continue;
+                };
+                let at = &ring.sonars()[j];
+                let offset = place - at.position;
+                let distance = math::norm(offset);
+                if offset.dot(&at.axis) < distance * least {
+                    continue;
+                }
+                witnesses[i].covered = true;
+                let later = observation.sonar[j].is_some_and(|sample| sample.taken_at > seen);
+                if j == i || !later {
+                    continue;
+                }
+                let beyond = range.get() - distance;
+                witnesses[i].heard_there |= beyond <= scatter;
+                witnesses[j].known_still |= still && beyond.abs() <= config.still_tolerance;
+            }
+        }
+        witnesses
     }
 }
 
@@ -339,6 +397,10 @@ const SCATTER: i32 = 100;
 
 /// Turning by no more than this between two readings, mrad, a sonar looks in the same direction.
 const SAME_DIRECTION: i32 = 30;
+
+/// A still surface that is heard at 60° to its normal comes nearer by twice the way that the
+/// robot's motion takes the cone along it.
+const GRAZING: i32 = 2;
 
 /// What is nearer by more than this explains, m/s, is another thing: nobody runs that fast indoors.
 const FASTEST: f32 = 4.0;
@@ -373,18 +435,45 @@ pub struct Look {
     pub odometer: Odometer,
     /// Where the robot is, if that is known.
     pub pose: Option<Pose>,
+    /// What the other sonars say.
+    pub witness: Witness,
+}
+
+/// What the echoes of other sonars say of a sonar.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Witness {
     /// Some sonar has an echo whose cone covers the place of what is held.
     pub covered: bool,
+    /// Another one hears something there or nearer: from now on it is that one's.
+    pub heard_there: bool,
+    /// What is heard is where another one held a still thing.
+    pub known_still: bool,
+    /// The range is that of a wall that others hear as well.
+    pub on_wall: bool,
 }
 
 impl EchoMemory {
-    /// Where what is held was seen, in the odometry frame.
-    fn place(&self) -> Option<Vector2<f32>> {
-        self.held.and_then(|held| held.place)
+    /// Where what is held was seen, in the odometry frame, and when.
+    fn place(&self) -> Option<(Vector2<f32>, Instant)> {
+        let held = self.held?;
+        Some((held.place?, held.echo.taken_at))
+    }
+
+    /// What is held has earned the class of still things, and was heard not long ago.
+    fn is_still(&self, now: Instant, config: &Config) -> bool {
+        let (Some(held), Some(latest)) = (self.held, self.latest) else {
+            return false;
+        };
+        let age = elapsed(held.echo.taken_at, now);
+        self.agreed >= config.still_samples as u32
+            && latest.taken_at == held.echo.taken_at
+            && u64::from(age.unsigned_abs()) <= milliseconds(config.sonar_age_max)
     }
 
     /// Takes in a look and holds on to what was heard until its place is seen to be free or the
     /// hold time is over (view.INV-2, view.INV-3).
+    //= view.INV-2
+    //= view.INV-3
     pub fn update(&mut self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         if let Some(range) = look.measured {
             self.compare(range, look, sonar, config);
@@ -395,6 +484,7 @@ impl EchoMemory {
 
     /// Compares a new echo with those before it: does the thing stand still, is it too fast, does
     /// the sonar hear at all?
+    //= view.INV-6
     fn compare(&mut self, range: i32, look: &Look, sonar: &Sonar, config: &Config) {
         let echo = Echo {
             range,
@@ -415,12 +505,14 @@ impl EchoMemory {
         if u64::from(gap.unsigned_abs()) > milliseconds(config.sonar_age_max) {
             self.agreed = 0;
             self.anchor = None;
+            self.unchanged_since = look.odometer.way[0];
         }
         let tolerance = millimetres_up(config.still_tolerance);
         let anchor = self.anchor.unwrap_or(latest);
         let [least, most] = anchor.approach(&look.odometer, sonar);
         let nearer = anchor.range - range;
-        if nearer >= least - tolerance && nearer <= most + tolerance {
+        let agrees = nearer >= least - tolerance && nearer <= most + tolerance;
+        if agrees || look.witness.on_wall {
             self.agreed = self.agreed.saturating_add(1);
             // From time to time the comparison begins anew, or the robot's own way would explain
             // more and more.
@@ -434,12 +526,16 @@ impl EchoMemory {
             self.agreed = 0;
             self.anchor = Some(echo);
         }
+        if look.witness.known_still {
+            self.agreed = self.agreed.max(config.still_samples as u32);
+        }
 
         // Something that comes nearer faster than the bound, and a quarter more, adds up; another
         // thing, which a jump or a turn brings into the cone, does not.
-        let [_, most] = latest.approach(&look.odometer, sonar);
+        let [ahead, back] = [0, 1].map(|i| grown(latest.odometer.way[i], look.odometer.way[i]));
         let turned = grown(latest.odometer.turned, look.odometer.turned);
-        let nearer = latest.range - range - most;
+        let swept = ahead + back + range * turned / 1000;
+        let nearer = latest.range - range - GRAZING * swept;
         let one_thing = turned <= SAME_DIRECTION && nearer <= way(FASTEST, gap) + tolerance;
         let excess = nearer - way(config.obstacle_speed_max * 1.25, gap);
         if one_thing && excess > 0 {
@@ -495,9 +591,9 @@ impl EchoMemory {
             // An echo from farther away than the same thing can have gone is another thing's: it
             // counts only when it keeps coming, and only while the place of the first is looked at.
             (Some(old), Some(range)) if range > old.echo.range + receded(&old) + SCATTER => {
-                let counts = look.covered && look.taken_at > old.counted;
+                let counts = look.witness.covered && look.taken_at > old.counted;
                 let farther = old.farther + u32::from(counts);
-                let gone = farther >= config.confirm_samples as u32;
+                let gone = farther >= config.confirm_samples as u32 || look.witness.heard_there;
                 Some(if gone || expired(&old) {
                     new(range)
                 } else {
@@ -515,13 +611,17 @@ impl EchoMemory {
                 Some(old)
             }
             (_, Some(range)) => Some(new(range)),
-            // No echo is no proof: only time lets go.
-            (Some(old), None) if !expired(&old) => Some(Held { farther: 0, ..old }),
+            // No echo is no proof: only time lets go, or another sonar that hears it.
+            (Some(old), None) if !expired(&old) && !look.witness.heard_there => {
+                Some(Held { farther: 0, ..old })
+            }
             (_, None) => None,
         };
     }
 
     /// What follows for the shield.
+    //= view.INV-5
+    //= view.INV-7
     fn hazard(&self, look: &Look, sonar: &Sonar, config: &Config) -> Hazard {
         let loss = sonar.contact_range + millimetres_up(config.range_error);
         let Some(held) = self.held else {
@@ -539,11 +639,10 @@ impl EchoMemory {
             };
         };
         let age = elapsed(held.echo.taken_at, look.now);
+        let still = self.is_still(look.now, config);
         let confirmed = self
             .latest
             .is_some_and(|latest| latest.taken_at == held.echo.taken_at);
-        let recent = u64::from(age.unsigned_abs()) <= milliseconds(config.sonar_age_max);
-        let still = self.agreed >= config.still_samples as u32 && confirmed && recent;
         let since = &held.echo.odometer;
         let longest = LONGEST as i32;
         Hazard {
@@ -570,19 +669,18 @@ fn way(speed: f32, time: i32) -> i32 {
     (millimetres_up(speed) * time + 999) / 1000
 }
 
-/// A sonar that has an echo covers this point of the robot's frame.
-fn is_looked_at<const N: usize>(
-    point: Vector2<f32>,
-    sonar: &[SonarReading; N],
-    ring: &Ring<N>,
+/// A reading is the echo of one of these walls.
+fn is_wall(
+    reading: SonarReading,
+    sonar: &Sonar,
+    walls: &[Option<Wall>; 2],
     config: &Config,
 ) -> bool {
-    let least = math::cos(config.sonar_half_angle);
-    sonar.iter().zip(ring.sonars()).any(|(reading, at)| {
-        let offset = point - at.position;
-        matches!(reading, SonarReading::Echo(_))
-            && offset.dot(&at.axis) >= math::norm(offset) * least
-    })
+    let SonarReading::Echo(range) = reading else {
+        return false;
+    };
+    let wall = &walls[usize::from(sonar.axis.y < 0.0)];
+    wall.is_some_and(|wall| wall.explains(range.get(), sonar, config))
 }
 
 /// The range of a judged reading in millimetres, rounded down; none if no echo came back.
@@ -633,6 +731,17 @@ fn judge_odometry(
     checked().map_err(|_: crate::quantity::OutOfRange| StopReason::OdometryInvalid)
 }
 
+/// Least range held by the sonars that look within the angle of view of straight ahead.
+fn ahead<const N: usize>(hazard: &[Hazard; N], ring: &Ring<N>, config: &Config) -> Length {
+    let mut least = length(config.sonar_range_max);
+    for (hazard, at) in hazard.iter().zip(ring.sonars()) {
+        if at.heading.get().abs() <= config.view_half_angle {
+            least = least.min(length(hazard.range as f32 / 1000.0));
+        }
+    }
+    least
+}
+
 /// Distance from the robot's centre line to what the sonars that look straight across hear, left
 /// and right.
 fn beside<const N: usize>(
@@ -645,7 +754,7 @@ fn beside<const N: usize>(
         let SonarReading::Echo(range) = *reading else {
             continue;
         };
-        if at.axis.x.abs() < 0.26 {
+        if at.axis.x.abs() < ACROSS {
             let side = usize::from(at.axis.y < 0.0);
             beside[side] = beside[side].min(length(at.position.y.abs() + range.get()));
         }

@@ -398,7 +398,7 @@ proptest! {
 }
 
 /// All 256 bytes.
-//= arcos.INV-13
+//= arcos.INV-13 (every input)
 #[test]
 fn compass_bytes_mean_what_both_conventions_say() {
     for byte in 0..=u8::MAX {

@@ -20,7 +20,9 @@ const TARGETS: &[(&str, Target)] = &[
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
     ("gesture", targets::gesture::run),
+    ("interact", targets::interact::run),
     ("shield", targets::shield::run),
+    ("valley", targets::valley::run),
 ];
 
 /// Numbers that are the same in every run (SplitMix64).

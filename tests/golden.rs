@@ -235,6 +235,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 )]),
             }
         }
+        //= avoid.INV-2
         ("S1.E2", "lit") => Computed {
             reference: vec![(
                 "v_o_cos_theta_o_cm_s",
@@ -248,6 +249,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
             )],
             core: None,
         },
+        //= avoid.INV-1
+        //= avoid.INV-3
         ("S1.E3", variant) => {
             let terms = [
                 "dp_px",
@@ -297,6 +300,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-4
         ("S1.E4", "rec") => {
             let (t, stop) = spec::avoid::e4_bound(
                 i.number("d_o_cm"),
@@ -335,6 +339,9 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= avoid.INV-6
+        //= avoid.INV-7
+        //= avoid.INV-8
         ("S1.E5", "rec") => {
             let bearing = i.number("obstacle_bearing_deg");
             let reference_heading = i.number("theta_ref_rad");
@@ -380,6 +387,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("theta_m_rad", radians(core.get()))]),
             }
         }
+        //= avoid.INV-9
         ("S1.E7", variant) => {
             let (turn, speed_max) = (i.number("dtheta_rad"), i.number("v_max_cm_s"));
             let reference = if variant == "lit" {
@@ -420,6 +428,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 }),
             }
         }
+        //= avoid.INV-12
         ("S1.A1", "rec") => {
             let (goal, customer) = (i.truth("goal_pose_reached"), i.truth("customer_confirmed"));
             let core = avoid::arrival(
@@ -439,6 +448,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(vec![("result", Value::from(format!("{core:?}")))]),
             }
         }
+        //= avoid.INV-14
         ("S1.A3", "rec") => {
             let orientation = i.number("global_orientation_deg");
             let (image, folded, approaching) = spec::avoid::a3(orientation);
@@ -459,6 +469,8 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= avoid.INV-10
+        //= avoid.INV-11
         ("S1.A4", "rec") => {
             let (distance, time) = (i.number("d_o_cm"), i.number("ttc_s"));
             let fresh = i.truth("sensors_fresh");
@@ -516,6 +528,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 ]),
             }
         }
+        //= kinematics.INV-1
         ("S2.E5", variant) => {
             let (radius, right, left) = (i.number("R_m"), i.number("omega_r"), i.number("omega_l"));
             let base = if variant == "rec" {
@@ -548,6 +561,9 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(core),
             }
         }
+        //= valley.INV-1
+        //= valley.INV-2
+        //= valley.INV-6
         ("S3.E1-24", variant) => valley_regions(variant == "lit", i),
         ("S3.E3-5", "lit") => {
             let (lateral, range) = (i.number("X"), i.number("Z_range"));
@@ -621,6 +637,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= valley.INV-4
         ("S3.E25" | "S3.E26", variant) => {
             let (width, whole) = (i.number("theta_r_deg"), i.number("theta_max_deg"));
             let [greatest, printed, exact, derived] = if equation == "S3.E25" {
@@ -659,6 +676,7 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: None,
             }
         }
+        //= valley.INV-8
         ("S3.select", "printed") => {
             let candidates: Vec<f64> = i.0["candidates_deg"]
                 .as_array()

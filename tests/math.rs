@@ -1,9 +1,12 @@
-//! Chapter `math`: the contracts on a grid of bit patterns over all of `f32`.
+//! Chapter `math`: contracts and budgets on a grid of bit patterns over all of `f32`.
 //!
 //! Every 4097th bit pattern meets every exponent and both signs, and ends the runs of equal low
-//! bits that a power of two would give. `examples/math_exhaustive.rs` leaves none out.
+//! bits that a power of two would give. `examples/math_exhaustive` leaves none out.
 
 mod common;
+#[path = "../examples/math_exhaustive/functions.rs"]
+#[allow(dead_code, reason = "the example says more of each")]
+mod functions;
 
 use proptest::prelude::*;
 use sidestep::math;
@@ -41,30 +44,46 @@ fn inputs() -> impl Iterator<Item = f32> {
         .chain(corners())
 }
 
-//= math.INV-1
+/// The sample of what `examples/math_exhaustive` does.
 #[test]
-fn sine_keeps_its_contract() {
-    for angle in inputs() {
-        let result = math::sin(angle);
-        assert!(contract::sin(result), "sin({angle:e}) = {result:e}");
+fn functions_keep_contract_and_budget() {
+    for function in &functions::FUNCTIONS {
+        for x in inputs() {
+            let result = (function.run)(x);
+            let name = function.name;
+            assert!((function.kept)(x, result), "{name}({x:e}) = {result:e}");
+            if let Some(error) = function.error(x, result) {
+                assert!(
+                    error <= function.budget,
+                    "{name}({x:e}) = {result:e} is off by {error} ULP"
+                );
+            }
+        }
     }
 }
 
-//= math.INV-2
+/// None is left out of the exhaustive check.
 #[test]
-fn cosine_keeps_its_contract() {
-    for angle in inputs() {
-        let result = math::cos(angle);
-        assert!(contract::cos(angle, result), "cos({angle:e}) = {result:e}");
-    }
+fn functions_are_all_there() {
+    let source = include_str!("../src/math.rs");
+    let unary: Vec<&str> = source
+        .lines()
+        .filter(|line| line.ends_with(": f32) -> f32 {") && line.matches(": f32").count() == 1)
+        .filter_map(|line| line.strip_prefix("pub fn ")?.split('(').next())
+        .collect();
+    let checked: Vec<&str> = functions::FUNCTIONS
+        .iter()
+        .map(|function| function.name)
+        .collect();
+    assert_eq!(unary, checked);
 }
 
-//= math.INV-3
+//= math.INV-5
 #[test]
-fn square_root_keeps_its_contract() {
+fn logarithm_keeps_its_contract() {
     for x in inputs() {
-        let result = math::sqrt(x);
-        assert!(contract::sqrt(x, result), "sqrt({x:e}) = {result:e}");
+        let result = math::ln(x);
+        assert!(contract::ln(x, result), "ln({x:e}) = {result:e}");
     }
 }
 

@@ -135,6 +135,9 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         outputs_spell_the_class, gesture_counts_after_enough_frames;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
+    interact: machine_keeps_its_promises, advice_is_within_limits;
+    valley: admitted_way_is_clear, accepted_valley_is_admitted, share_is_a_share,
+        order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
     shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
         rest_does_not_overflow, plan_covers_command, plan_covers_motion,

@@ -211,16 +211,12 @@ proptest! {
             return Ok(());
         };
         for way in [0, 1] {
-            // The greatest speed from which the robot rests within the way and the time.
-            let fastest = greatest(15, 30_000, |speed| {
-                limits.way_to_rest(speed) <= plan.way[way]
-                    && (speed == 0 || limits.time_to_rest(speed) <= plan.time)
-            });
             let speed = if twist.speed != 0 && told == way { twist.speed } else { 0 };
             let moving = if rolling == way { motion.speed } else { 0 };
-            prop_assert!(promise::plans_for(fastest, speed, gain, moving));
-            prop_assert!(promise::covers_rest(
-                plan.way[way], plan.time, least[way], limits.braking(), limits.reaction_time()
+            prop_assert!(promise::plan_suffices(
+                [plan.way[way], plan.time],
+                [speed, gain, moving],
+                [limits.braking(), limits.reaction_time()],
             ));
             let most = if least[way] == 0 { 0 } else { least[way] + top(limits) / 64 + 1 };
             prop_assert!(plan.way[way] <= limits.way_to_rest(most));

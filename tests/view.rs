@@ -13,7 +13,7 @@ use sidestep::failsafe::StopReason;
 use sidestep::observation::{Observation, SonarReading, SonarSample, classify};
 use sidestep::quantity::{Angle, Instant, Length, Speed};
 use sidestep::ring::{Placement, Ring, Sonar};
-use sidestep::view::{Class, EchoMemory, Hazard, Look, Memory, Odometer, Pose, View};
+use sidestep::view::{Class, EchoMemory, Hazard, Look, Memory, Odometer, Pose, View, Witness};
 use sidestep_spec::avoid as law;
 use sidestep_spec::view as promise;
 
@@ -127,7 +127,10 @@ impl Hearing {
             now: Instant(now),
             odometer: self.odometer,
             pose: None,
-            covered,
+            witness: Witness {
+                covered,
+                ..Witness::default()
+            },
         };
         self.memory.update(&look, &self.sonar, &self.config)
     }

@@ -229,6 +229,7 @@ fn advice(config: &Config, bytes: &mut Bytes) {
             sonar: [SonarReading::NoEcho(Length::MAX); 3],
             hazard: [NOTHING; 3],
             obstacle: (flags & 4 == 0).then(|| any_obstacle(bytes)),
+            ahead: bytes.length(),
             room: [bytes.length(), bytes.length()],
             beside: [bytes.length(), bytes.length()],
             base: BaseStatus {

@@ -11,7 +11,7 @@ use crate::pilot::settings;
 use sidestep::gesture::Gesture;
 use sidestep::interact::{
     Announcement, Commissioned, Event, Frame, Interact, LateralAxis, Orders, People, Settings,
-    State, Trial, USUAL,
+    State, Trial,
 };
 use sidestep::valley::Side;
 use sidestep_sim::depth_camera::{self, DepthCamera};

@@ -76,8 +76,11 @@ fn people_who_are_too_fast_are_named() {
     assert!(totals.failed > 0, "the check does not bite");
     assert_eq!(totals.failed_unexplained, 0);
     for report in totals.failures.values() {
+        // Whoever stood still first and then was too fast broke two bounds at once.
         let broken: Vec<_> = report.broken.iter().map(|b| b.name()).collect();
-        assert_eq!(broken, ["people's speed"], "seed {}", report.seed);
+        assert!(broken.contains(&"people's speed"), "seed {}", report.seed);
+        let known = ["people's speed", "still things' speed"];
+        assert!(broken.iter().all(|name| known.contains(name)), "{broken:?}");
     }
     assert!(totals.to_string().contains("broken: people's speed: "));
 }

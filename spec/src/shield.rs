@@ -137,11 +137,20 @@ pub fn greatest(found: i32, wish: i32, threshold: i32) -> bool {
     found == wish.min(threshold)
 }
 
-/// shield.INV-11: the speed for which a plan allows is no less than what the robot may have now,
-/// and no less than what it is told, with one gain, if it is told to move.
+/// shield.INV-11: way and time of a plan are enough for the speed that the robot may have now
+/// (`motion`), and, if it is told to move, for what it is told (`speed`) with one gain.
 #[must_use]
-pub fn plans_for(fastest: i32, speed: i32, gain: i32, motion: i32) -> bool {
-    fastest >= motion && (speed == 0 || fastest >= speed.abs() + gain)
+pub fn plan_suffices(
+    [way, time]: [i32; 2],
+    [speed, gain, motion]: [i32; 3],
+    [braking, reaction_time]: [i32; 2],
+) -> bool {
+    let fastest = if speed == 0 {
+        motion
+    } else {
+        motion.max(speed.abs() + gain)
+    };
+    covers_rest(way, time, fastest, braking, reaction_time)
 }
 
 /// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ left, multiplied by 1000·α; `left` is

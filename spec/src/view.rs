@@ -13,7 +13,7 @@ pub fn nearer_counts(believed: i32, measured: i32) -> bool {
 }
 
 /// view.INV-3: one reading without an echo, or with a farther one, frees no more of a place than
-/// motion within the promise and scatter explain (mm).
+/// motion within the promise and scatter explain (mm), unless another sonar hears what was there.
 #[must_use]
 pub fn not_freed_at_once(believed_before: i32, believed_after: i32, explained: i32) -> bool {
     believed_after <= believed_before + explained

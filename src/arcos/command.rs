@@ -195,6 +195,7 @@ impl<'a> HostCommand<'a> {
     /// # Errors
     /// [`EncodeError::Integer`] if an integer's magnitude exceeds 65535, [`EncodeError::TooLong`] if
     /// the frame does not fit; [`MAX_FRAME`](super::MAX_FRAME) bytes hold any that is legal.
+    //= arcos.INV-6
     pub fn encode<'b>(&self, buffer: &'b mut [u8]) -> Result<Frame<'b>, EncodeError> {
         let writer = FrameWriter::new(buffer, self.number);
         match self.argument {
@@ -249,6 +250,7 @@ impl HostCommand<'static> {
     }
 
     /// A command with an integer argument in -65535..=65535.
+    //= arcos.INV-7
     #[must_use]
     pub const fn with_integer(number: u8, value: i32) -> Self {
         Self {

@@ -88,6 +88,8 @@ impl<'a> Frame<'a> {
     /// # Errors
     /// [`FrameError::Truncated`] as long as more bytes could still make `bytes` a frame, any other
     /// error when none could.
+    //= arcos.INV-1
+    //= arcos.INV-2
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let count = match *bytes {
             [FIRST, SECOND, count, ..] => count,
@@ -226,6 +228,7 @@ impl<'b> FrameWriter<'b> {
     ///
     /// # Errors
     /// [`EncodeError::TooLong`] if the frame does not fit.
+    //= arcos.INV-3
     pub fn finish(self) -> Result<Frame<'b>, EncodeError> {
         let too_long = EncodeError::TooLong;
         let frame = self

@@ -56,6 +56,7 @@ impl SonarReadings {
         self.readings.get(..self.count).unwrap_or_default()
     }
 
+    //= arcos.INV-9
     fn decode(reader: &mut Reader<'_>) -> Result<Self, PacketError> {
         let claimed = reader.u8()?;
         if usize::from(claimed) > MAX_SONARS {
@@ -277,6 +278,8 @@ impl StandardInformation {
     /// A good checksum does not make a good packet: one simulator counts sonar readings that it then
     /// does not send. A packet is refused whole if it is of another type, ends before its last
     /// compulsory field, or claims sonar readings that are absent, too many, or of no sonar.
+    //= arcos.INV-8
+    //= arcos.INV-10
     pub fn decode(frame: Frame<'_>) -> Result<Self, PacketError> {
         let kind = frame.number();
         if !Self::is_kind(kind) {
@@ -378,6 +381,7 @@ pub const COMPASS_UNCERTAINTY_DEG: u16 = 2;
 ///
 /// The byte counts in steps of 2°, but hosts disagree on its origin: some read `2b`, others
 /// `2(b − 1)`. This is the middle, `2b − 1`, which is within 1° of either.
+//= arcos.INV-13
 #[must_use]
 pub const fn compass_heading_deg(byte: u8) -> Option<u16> {
     match byte {

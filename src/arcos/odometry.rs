@@ -7,6 +7,7 @@ use super::base::BaseParameters;
 ///
 /// Hosts disagree on whether the counter has 15 bits or 16; modulo 2¹⁵ serves both. At 2.2 m/s and a
 /// SIP every 100 ms a base of 0.485 mm per unit moves 454 units between two.
+//= arcos.INV-11
 #[must_use]
 pub const fn shortest_delta(previous: u16, current: u16) -> i16 {
     // Bit 15 is shifted out; the arithmetic shift back carries bit 14 as the sign.
@@ -34,6 +35,7 @@ impl Odometry {
 
     /// Takes in the position counters of the next SIP. The first pair after [`new`](Self::new) or
     /// [`rebase`](Self::rebase) moves nothing: it only tells where the counters stand.
+    //= arcos.INV-12
     pub const fn update(&mut self, x: u16, y: u16) {
         if let Some((last_x, last_y)) = self.last {
             self.x = self.x.saturating_add(shortest_delta(last_x, x) as i64);

@@ -89,6 +89,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The next string. It ends at its NUL or, as hosts have always read it, with the packet.
+    //= arcos.INV-14
     pub(super) fn text(&mut self) -> Result<&'a [u8], PacketError> {
         if self.rest.is_empty() {
             return Err(PacketError::Truncated);

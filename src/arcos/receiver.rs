@@ -68,6 +68,8 @@ impl<const LONGEST: usize> BoundedReceiver<LONGEST> {
 
     /// The next frame. `None` means that `input` is used up: all that was in it has been delivered,
     /// skipped or kept as the beginning of a frame.
+    //= arcos.INV-4
+    //= arcos.INV-5
     pub fn next_frame(&mut self, input: &mut &[u8]) -> Option<Frame<'_>> {
         // Each turn takes bytes from `input` or skips one of those held.
         let length = loop {

@@ -247,7 +247,7 @@ pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
     let ages = prop_oneof![0..500_u64, 0..5_000_u64];
     let rates = prop_oneof![4 => -1.0_f32..1.0, 1 => between(-20.0, 20.0)];
     let motion = (between(-10.0, 10.0), rates, 0..100_000_u64, ages);
-    let lengths = ([length(), length()], [length(), length()]);
+    let lengths = (length(), [length(), length()], [length(), length()]);
     (pose, motion, goal, sonars, obstacle, lengths, base()).prop_map(
         |(
             pose,
@@ -255,7 +255,7 @@ pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
             goal,
             (sonar, hazard),
             obstacle,
-            (room, beside),
+            (ahead, room, beside),
             base,
         )| View {
             now: Instant(now),
@@ -273,6 +273,7 @@ pub fn view<const N: usize>() -> impl Strategy<Value = View<N>> {
             sonar,
             hazard,
             obstacle,
+            ahead,
             room,
             beside,
             base,

@@ -1,7 +1,8 @@
-//! The core on bare metal. This crate defines the panic handler itself: if anything it depends on
-//! linked std, there would be two, and it would not compile.
+//! The core on bare metal, as a firmware would call it. This crate defines the panic handler itself:
+//! if anything it depends on linked std, there would be two, and it would not compile.
 #![no_std]
 
+use core::mem::MaybeUninit;
 use nalgebra::Vector2;
 use sidestep::avoid::Avoid;
 use sidestep::config::Config;
@@ -10,16 +11,20 @@ use sidestep::observation::Observation;
 use sidestep::preset;
 use sidestep::ring::{Placement, Ring};
 
+/// S1's law under the shield, with the three sonars of S1's robot.
+pub type Base = Controller<Avoid, 3>;
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {}
 }
 
-/// One tick of S1's law with three sonars, as a firmware would call it. Returns the speed in mm/s.
+/// Makes a controller where the firmware has room for one. False if it could not; nothing is written
+/// then.
 #[unsafe(no_mangle)]
-pub extern "C" fn sidestep_tick(observation: &Observation<3>) -> i32 {
+pub extern "C" fn sidestep_start(controller: &mut MaybeUninit<Base>) -> bool {
     let Ok(config) = Config::new(preset::SRIKANDI_II_2012) else {
-        return 0;
+        return false;
     };
     let at = |heading| Placement {
         x: 0.2,
@@ -27,11 +32,26 @@ pub extern "C" fn sidestep_tick(observation: &Observation<3>) -> i32 {
         heading,
     };
     let Ok(ring) = Ring::new(&[at(0.5), at(0.0), at(-0.5)], &config) else {
-        return 0;
+        return false;
     };
     let goal = Vector2::new(3.0, 0.0);
     match Controller::new(config, ring, Avoid::new(config), goal) {
-        Ok(mut controller) => controller.tick(observation).command.speed(),
-        Err(_) => 0,
+        Ok(made) => {
+            controller.write(made);
+            true
+        }
+        Err(_) => false,
     }
+}
+
+/// One tick. Writes the turn rate in mrad/s, and returns the speed in mm/s.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick(
+    controller: &mut Base,
+    observation: &Observation<3>,
+    turn_rate: &mut i32,
+) -> i32 {
+    let command = controller.tick(observation).command;
+    *turn_rate = command.turn_rate();
+    command.speed()
 }

@@ -1,16 +1,19 @@
-//! Checks the contracts of `sidestep::math` for every `f32` there is: 2³² inputs per function.
+//! Checks the functions of `sidestep::math` for every `f32` there is: 2³² inputs per function, each
+//! against its contract and against f64.
 //!
 //! Proofs replace each of these functions by its contract, so the proofs are as good as this run:
 //!
 //! ```sh
-//! cargo run --release --example math_exhaustive
+//! cargo run --release --example math_exhaustive          # all
+//! cargo run --release --example math_exhaustive -- sqrt  # those named
 //! ```
 //!
-//! It takes some minutes and uses every core. The exit code is 1 if a contract is broken; the
-//! inputs are then named. `atan2` has 2⁶⁴ inputs: `tests/math.rs` samples those.
+//! It takes some minutes and uses every core. The exit code is 1 if a contract is broken or an error
+//! is beyond its budget; the inputs are then named. `atan2` has 2⁶⁴ inputs: `tests/math.rs` samples those.
 
-use sidestep::math;
-use sidestep_spec::math as contract;
+mod functions;
+
+use functions::{FUNCTIONS, Function};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -21,52 +24,16 @@ const ALL: u64 = 1 << 32;
 /// So many broken inputs are named; the rest are only counted.
 const NAMED: usize = 20;
 
-/// A function of one variable with its contract.
-struct Function {
-    name: &'static str,
-    invariant: &'static str,
-    run: fn(f32) -> f32,
-    /// The contract, of the input and the result.
-    kept: fn(f32, f32) -> bool,
-    /// How near the result comes to breaking the contract; greatest is worst. `None` where the
-    /// contract asks nothing that could be near.
-    nearness: fn(f32, f32) -> Option<f64>,
-    nearness_is: &'static str,
-}
+/// The greatest of some values, with its input.
+type Worst = Option<(f64, f32)>;
 
-const FUNCTIONS: [Function; 3] = [
-    Function {
-        name: "sin",
-        invariant: "math.INV-1",
-        run: math::sin,
-        kept: |_, result| contract::sin(result),
-        nearness: |_, result| Some(f64::from(result).abs()),
-        nearness_is: "greatest |result| (at most 1)",
-    },
-    Function {
-        name: "cos",
-        invariant: "math.INV-2",
-        run: math::cos,
-        kept: contract::cos,
-        // Beyond 60° only the range counts; up to there the least cosine does.
-        nearness: |angle, result| {
-            let within = angle.abs() <= std::f32::consts::FRAC_PI_3;
-            within.then_some(0.5 - f64::from(result))
-        },
-        nearness_is: "greatest ½ − result within 60° (at most 1e-6)",
-    },
-    Function {
-        name: "sqrt",
-        invariant: "math.INV-3",
-        run: math::sqrt,
-        kept: contract::sqrt,
-        nearness: |x, result| {
-            let positive = x > 0.0 && x.is_finite();
-            positive.then(|| f64::from(result) - f64::from(x.max(1.0)))
-        },
-        nearness_is: "greatest result − max(1, x) (at most 0)",
-    },
-];
+/// The greater of two.
+fn worse(one: Worst, other: Worst) -> Worst {
+    match (one, other) {
+        (Some(one), Some(other)) if other.0 > one.0 => Some(other),
+        (one, other) => one.or(other),
+    }
+}
 
 /// What a run over some inputs found.
 #[derive(Default)]
@@ -74,8 +41,10 @@ struct Findings {
     inputs: u64,
     broken: u64,
     named: Vec<(f32, f32)>,
-    /// The worst value and its input.
-    worst: Option<(f64, f32)>,
+    /// What came nearest to breaking the contract, and its input.
+    nearest: Worst,
+    /// The greatest error in ULP, and its input.
+    error: Worst,
 }
 
 impl Findings {
@@ -85,17 +54,18 @@ impl Findings {
             let x = f32::from_bits(bits as u32);
             let result = (function.run)(x);
             findings.inputs += 1;
-            if !(function.kept)(x, result) {
+            let error = function.error(x, result);
+            // An error that is no number is not within the budget either.
+            let within = error.is_none_or(|error| error <= function.budget);
+            if !((function.kept)(x, result) && within) {
                 findings.broken += 1;
                 if findings.named.len() < NAMED {
                     findings.named.push((x, result));
                 }
             }
-            if let Some(value) = (function.nearness)(x, result)
-                && findings.worst.is_none_or(|(worst, _)| value > worst)
-            {
-                findings.worst = Some((value, x));
-            }
+            let nearness = (function.nearness)(x, result).map(|value| (value, x));
+            findings.nearest = worse(findings.nearest, nearness);
+            findings.error = worse(findings.error, error.map(|error| (error, x)));
         }
         findings
     }
@@ -105,11 +75,8 @@ impl Findings {
         self.broken += other.broken;
         self.named.extend(other.named);
         self.named.truncate(NAMED);
-        self.worst = match (self.worst, other.worst) {
-            (Some(mine), Some(theirs)) if theirs.0 > mine.0 => Some(theirs),
-            (None, theirs) => theirs,
-            (mine, _) => mine,
-        };
+        self.nearest = worse(self.nearest, other.nearest);
+        self.error = worse(self.error, other.error);
         self
     }
 }
@@ -145,21 +112,30 @@ fn check(function: &Function) -> Findings {
 }
 
 fn main() -> ExitCode {
+    let named: Vec<String> = std::env::args().skip(1).collect();
     let mut kept = true;
     for function in &FUNCTIONS {
+        if !(named.is_empty() || named.iter().any(|name| name == function.name)) {
+            continue;
+        }
         let begin = Instant::now();
         let found = check(function);
         let seconds = begin.elapsed().as_secs_f64();
         println!(
-            "{} {}: {} inputs, {} break the contract, {seconds:.0} s",
+            "{} {}: {} inputs, {} break the contract or the budget, {seconds:.0} s",
             function.invariant, function.name, found.inputs, found.broken
         );
-        if let Some((value, x)) = found.worst {
-            println!(
-                "    {}: {value:e} at {x:e} (bits {:#010x})",
-                function.nearness_is,
-                x.to_bits()
-            );
+        let budget = format!("greatest error in ULP (at most {})", function.budget);
+        for (what, worst) in [
+            (function.nearness_is, found.nearest),
+            (budget.as_str(), found.error),
+        ] {
+            if let Some((value, x)) = worst {
+                println!(
+                    "    {what}: {value:e} at {x:e} (bits {:#010x})",
+                    x.to_bits()
+                );
+            }
         }
         for (x, result) in &found.named {
             println!(
