@@ -678,6 +678,10 @@ fn squared_deviation((mean, spread): Usual, value: f32) -> f32 {
 
 /// What tells the classes apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nothing here allocates, and there is one of them"
+)]
 pub enum Classifier {
     /// S3's linear support vector machine.
     SupportVectorMachine(SupportVectorMachine),

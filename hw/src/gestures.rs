@@ -508,22 +508,18 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
     {
         document = document.add(text(8.0, lane(number as f64) + 15.0, 13.0, name));
     }
-    let shown = |look: &Look| Some(look.shown.unwrap_or(Gesture::Rest));
-    let recognised = |look: &Look| look.person.and_then(|person| person.pose.ok());
-    let counts = |look: &Look| look.person.and_then(|person| person.gesture);
-    let lanes: [&dyn Fn(&Look) -> Option<Gesture>; 3] = [&shown, &recognised, &counts];
+    let lanes: [fn(&Look) -> Option<Gesture>; 3] = [
+        |look| Some(look.shown.unwrap_or(Gesture::Rest)),
+        |look| look.person.and_then(|person| person.pose.ok()),
+        |look| look.person.and_then(|person| person.gesture),
+    ];
     for (number, of) in lanes.into_iter().enumerate() {
         for run in looks.chunk_by(|one, other| of(one) == of(other)) {
-            let (Some(first), Some(last)) = (run.first(), run.last()) else {
-                continue;
-            };
-            if let Some(gesture) = of(first) {
-                document = document.add(bar(
-                    number as f64,
-                    first.t,
-                    last.t + FRAME_MS,
-                    colour(gesture),
-                ));
+            if let (Some(first), Some(last)) = (run.first(), run.last())
+                && let Some(gesture) = of(first)
+            {
+                let end = last.t + FRAME_MS;
+                document = document.add(bar(number as f64, first.t, end, colour(gesture)));
             }
         }
     }

@@ -83,13 +83,11 @@ fn weighted(weights: &[f64], inputs: &[f64]) -> f64 {
 #[must_use]
 pub fn duels(planes: &[[f64; 7]; 21], six: &[f64; 6]) -> [[f64; 7]; 7] {
     let mut scores = [[0.0; 7]; 7];
-    let mut plane = planes.iter();
-    for i in 0..7 {
-        for j in i + 1..7 {
-            let score = plane.next().map_or(0.0, |plane| weighted(plane, six));
-            scores[i][j] = score;
-            scores[j][i] = -score;
-        }
+    let pairs = (0..7).flat_map(|i| (i + 1..7).map(move |j| (i, j)));
+    for ((i, j), plane) in pairs.zip(planes) {
+        let score = weighted(plane, six);
+        scores[i][j] = score;
+        scores[j][i] = -score;
     }
     scores
 }
