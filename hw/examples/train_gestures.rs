@@ -436,8 +436,11 @@ fn usual(values: &[f64]) -> Usual {
     (round(mean), round(variance.sqrt()))
 }
 
-/// Splits by person: what to train on, what to test on, for each fold.
-fn folds(set: &[Sample], count: usize) -> Result<Vec<(Vec<&Sample>, Vec<&Sample>)>, String> {
+/// What to train on, and what to test on.
+type Fold<'a> = (Vec<&'a Sample>, Vec<&'a Sample>);
+
+/// Splits by person.
+fn folds(set: &[Sample], count: usize) -> Result<Vec<Fold<'_>>, String> {
     let mut people: Vec<usize> = set.iter().map(|sample| sample.person).collect();
     people.sort_unstable();
     people.dedup();

@@ -5,7 +5,7 @@ use crate::config::RobotConfig;
 use crate::demo::{Options, run_folder};
 use crate::drive::{Clock, Signals};
 use crate::encounter::{self, Camera, Cue, Encounter, Happening, Met, Showing};
-use crate::skeletons;
+use crate::skeletons::{self, CameraClock};
 use serde_json::{Value, json};
 use sidestep::gesture::{
     Frame, Gesture, Model, PEOPLE_MAX, Person, Recognizer, Rejection, Settings, Skeleton,
@@ -26,7 +26,9 @@ use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 ///
 /// `{"t":1200,"id":7,"pose":"stop","gesture":"stop"}`: `pose` is what this frame shows, `gesture` what
 /// counts; instead of a pose there is why none was recognised, `"rejected":"…"`. Whoever is seen no
-/// more is `{"t":…,"id":…,"gone":true}`. A bad line is `{"error":"…"}`.
+/// more is `{"t":…,"id":…,"gone":true}`. A bad line is `{"error":"…"}`. A frame that took longer to
+/// arrive than frames may be apart is `{"t":…,"late":…}`, in ms, and the first that is not
+/// `{"t":…,"late":0}`. `now` gives the time of arrival, ms.
 ///
 /// # Errors
 /// If a setting is out of range, or nothing can be written.
@@ -34,8 +36,11 @@ pub fn watch(
     frames: impl Iterator<Item = Result<Frame, String>>,
     model: Model,
     settings: Settings,
+    mut now: impl FnMut() -> u64,
     out: &mut impl Write,
 ) -> Result<(), Box<dyn Error>> {
+    let mut clock = CameraClock::default();
+    let mut late = false;
     let mut recognizer = Recognizer::new(model, settings)?;
     let mut known: Vec<(u64, Value)> = Vec::new();
     for frame in frames {
@@ -47,6 +52,13 @@ pub fn watch(
             }
         };
         let t = frame.taken_at.0;
+        let arrived = now();
+        let age = arrived.saturating_sub(clock.taken(frame.taken_at, arrived).0);
+        if (age > settings.frame_age_max) != late {
+            late = !late;
+            let age = if late { age } else { 0 };
+            writeln!(out, "{}", json!({"t": t, "late": age}))?;
+        }
         let mut seen = Vec::new();
         for person in recognizer.update(&frame).iter().flatten() {
             let shown = told(person);

@@ -12,7 +12,8 @@ use sidestep_hw::config::RobotConfig;
 use sidestep_hw::gestures;
 use sidestep_hw::skeletons::{CameraClock, Lines, parse, to_line};
 use sidestep_sim::skeleton::{Body, CameraErrors, Place, Pose};
-use std::io::Cursor;
+use std::io::{Cursor, Write};
+use std::process::{Command, Stdio};
 
 const MODELS: [(&str, Model); 2] = [
     ("net", Model::NEURAL_NETWORK),
@@ -218,19 +219,65 @@ fn watching_tells_what_changes() {
     frames.insert(5, Err("test:6: bad".to_owned()));
     let mut out = Vec::new();
     let settings = Settings::default();
-    gestures::watch(frames.into_iter(), Model::default(), settings, &mut out).expect("written");
+    // The last of them come half a second late.
+    let mut arrived = 0;
+    let now = || {
+        arrived += 33;
+        if arrived > 33 * 27 {
+            arrived + 500
+        } else {
+            arrived
+        }
+    };
+    gestures::watch(
+        frames.into_iter(),
+        Model::default(),
+        settings,
+        now,
+        &mut out,
+    )
+    .expect("written");
     let told: Vec<Value> = String::from_utf8(out)
         .expect("text")
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
-    assert_eq!(told.len(), 4, "{told:#?}");
+    assert_eq!(told.len(), 5, "{told:#?}");
     assert_eq!(told[0]["pose"], "forward");
     assert_eq!(told[0]["gesture"], Value::Null);
     assert_eq!(told[1]["error"], "test:6: bad");
     assert_eq!(told[2]["gesture"], "forward");
     assert_eq!(told[2]["t"], 1000 + 33 * (u64::from(settings.frames) - 1));
     assert_eq!(told[3]["gone"], true);
+    assert_eq!(told[4]["late"], 500);
+}
+
+/// The program takes skeletons from standard input.
+#[test]
+fn program_reads_standard_input() {
+    let mut body = Body::any(CameraErrors::NONE, 7).expect("a body");
+    let mut input = String::new();
+    for i in 0..12 {
+        let mut frame = parse(&format!(r#"{{"t":{},"people":[]}}"#, 33 * i)).expect("a frame");
+        let place = Place::at(2.0, 0.0, 0.0);
+        frame.people[0] = Some(body.skeleton(3, Pose::of(Gesture::MasterSelect), place));
+        input += &(to_line(&frame).expect("finite") + "\n");
+    }
+    for model in ["net", "svm"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_sidestep"))
+            .args(["gestures", "-", "--frames", "5", "--model", model])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program");
+        let mut stdin = child.stdin.take().expect("its input");
+        stdin.write_all(input.as_bytes()).expect("it reads");
+        drop(stdin);
+        let output = child.wait_with_output().expect("it ends");
+        let told = String::from_utf8(output.stdout).expect("text");
+        assert!(output.status.success(), "{told}");
+        assert!(told.contains(r#""gesture":"master-select""#), "{told}");
+    }
 }
 
 /// Looks after the announcer until it is quiet; says whether the base is to beep.
