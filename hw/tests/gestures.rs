@@ -4,6 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
+use sidestep::arcos::{HostCommand, MAX_FRAME};
 use sidestep::gesture::{Gesture, Model, PEOPLE_MAX, Rejection, Settings};
 use sidestep::interact::Announcement;
 use sidestep::quantity::Instant;
@@ -311,6 +312,24 @@ fn announcements_are_events_and_beep_where_nobody_speaks() {
     let mut announcer = Announcer::new(Some("true"));
     let at_once = announcer.say(Announcement::NoFreePath, 1, &mut Vec::new());
     assert!(at_once.is_none() && !listened(&mut announcer));
+}
+
+/// What the base is to beep is a frame that it takes: pairs, twenty at most.
+#[test]
+fn beeps_are_frames() {
+    for announcement in [
+        Announcement::RobotInPath,
+        Announcement::Interact,
+        Announcement::NoFreePath,
+    ] {
+        let tones = beeps(announcement);
+        assert!(tones.len().is_multiple_of(2) && tones.len() <= 40);
+        let mut buffer = [0; MAX_FRAME];
+        let frame = HostCommand::say(tones)
+            .encode(&mut buffer)
+            .expect("a frame");
+        assert_eq!(HostCommand::decode(frame), HostCommand::say(tones));
+    }
 }
 
 /// The words reach the command as one argument, whatever is in them; what comes meanwhile waits,
