@@ -1,6 +1,7 @@
 //! The program `sidestep`.
 
 use clap::{Parser, Subcommand};
+use sidestep::gesture;
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::coverage;
 use sidestep_hw::decide;
@@ -9,8 +10,10 @@ use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
+use sidestep_hw::gestures;
 use sidestep_hw::pilot::{Pilot, settings};
 use sidestep_hw::replay::{self, Columns};
+use sidestep_hw::skeletons::Lines;
 use sidestep_hw::{log, transport};
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
 use sidestep_sim::sonar::Faults;
@@ -47,7 +50,9 @@ enum Command {
     /// timeline.svg too: belief, decision and distance over time), edge (S4: a planned way through
     /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
     /// and no log), coverage (every edge of a floor, some of them blocked, by S4 with a laser;
-    /// likewise; --data FILE for a floor of your own).
+    /// likewise; --data FILE for a floor of your own), valley (S3's Figures 8 and 9: people are asked,
+    /// lead the robot or let it choose, and are passed; in virtual time, without a log), gesture
+    /// (somebody leads the robot by gestures, S3 Fig. 8).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -70,6 +75,10 @@ enum Command {
         /// People walk on even into a robot that stands still.
         #[arg(long)]
         inconsiderate: bool,
+        /// A command that speaks what the robot says, such as espeak-ng; it gets the words as its last
+        /// argument.
+        #[arg(long, value_name = "COMMAND")]
+        speech: Option<String>,
         /// How much faster than real time.
         #[arg(long, default_value_t = 4.0)]
         speed: f64,
@@ -145,8 +154,49 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Recognise gestures in skeletons that a depth camera's program gives as lines of JSON.
+    ///
+    /// One line is one frame: {"t": 41730, "people": [{"id": 7, "neck": [0.12, 0.31, 2.4],
+    /// "left_shoulder": [..], "right_shoulder": [..], "left_elbow": [..], "right_elbow": [..],
+    /// "left_wrist": [..], "right_wrist": [..]}]}, with t in ms of the camera's clock and points in
+    /// metres, x to the camera's left, y up, z ahead. Left and right are the person's own; a joint
+    /// that is not tracked is left out.
+    ///
+    /// Prints a line of JSON whenever what somebody shows, or what counts, changes. `demo gesture`
+    /// leaves a file to try.
+    Gestures {
+        /// Where skeletons come from: - is standard input, tcp:HOST:PORT a server, else a file.
+        source: String,
+        /// Which of S3's two models recognises.
+        #[arg(long, value_enum, default_value = "net")]
+        model: ModelName,
+        /// Frames in a row after which a gesture counts, 1 to 60.
+        #[arg(long, default_value_t = gesture::Settings::default().frames)]
+        frames: u32,
+        /// The same for stop.
+        #[arg(long, default_value_t = gesture::Settings::default().stop_frames)]
+        stop_frames: u32,
+    },
     /// Print the default configuration, commented.
     Config,
+}
+
+/// S3's two models.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ModelName {
+    /// The back-propagation net.
+    Net,
+    /// The linear support vector machine.
+    Svm,
+}
+
+impl From<ModelName> for gesture::Model {
+    fn from(name: ModelName) -> Self {
+        match name {
+            ModelName::Net => Self::NEURAL_NETWORK,
+            ModelName::Svm => Self::SUPPORT_VECTOR_MACHINE,
+        }
+    }
 }
 
 fn goal(text: &str) -> Result<[f32; 2], String> {
@@ -182,8 +232,11 @@ fn main() -> ExitCode {
         eprintln!("sidestep: cannot catch Ctrl-C: {error}");
         return ExitCode::FAILURE;
     }
-    // Ends with the program.
-    std::thread::spawn(|| SIGNALS.listen());
+    // Standard input may be what skeletons come from.
+    if !matches!(arguments.command, Command::Gestures { .. }) {
+        // Ends with the program.
+        std::thread::spawn(|| SIGNALS.listen());
+    }
     match run(arguments.command) {
         Ok(code) => code,
         Err(error) => {
@@ -203,6 +256,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             dropout,
             false_echo,
             inconsiderate,
+            speech,
             speed,
             out,
             config,
@@ -221,7 +275,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 },
                 ..Knobs::default()
             };
-            run_demo(&Options {
+            let options = Options {
                 scenario,
                 data,
                 start_time,
@@ -232,7 +286,12 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                     None if decides => decide::table_1()?,
                     config => read_config(config.as_deref())?,
                 },
-            })
+            };
+            if options.scenario == gestures::DEMO {
+                gestures::demo(&options, speech.as_deref(), &SIGNALS)?;
+                return Ok(ExitCode::SUCCESS);
+            }
+            run_demo(&options)
         }
         Command::Run {
             port,
@@ -267,6 +326,23 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             }
         }
         Command::Faults { seeds, out } => run_faults(seeds, out.as_deref()),
+        Command::Gestures {
+            source,
+            model,
+            frames,
+            stop_frames,
+        } => {
+            let settings = gesture::Settings {
+                frames,
+                stop_frames,
+                ..gesture::Settings::default()
+            };
+            let lines = Lines::open(&source)?;
+            let clock = Clock::new(1.0);
+            let mut out = std::io::stdout().lock();
+            gestures::watch(lines, model.into(), settings, || clock.now(), &mut out)?;
+            Ok(ExitCode::SUCCESS)
+        }
         Command::Config => {
             print!("{}", config::default_toml());
             Ok(ExitCode::SUCCESS)
@@ -274,46 +350,46 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
     }
 }
 
+/// Says where a run's picture is.
+fn keep_picture(status: &mut Status, folder: &Path) {
+    let picture = folder.join("picture.svg");
+    status.keep(&format!("picture: {}\n", picture.display()));
+}
+
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
-    if options.scenario == edge::NAME {
-        edge::demo(options, &mut status)?;
-        return Ok(ExitCode::SUCCESS);
+    match options.scenario.as_str() {
+        edge::NAME => {
+            edge::demo(options, &mut status)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        decide::NAME => {
+            let (folder, contacts) = decide::demonstrate(options, &SIGNALS, &mut status)?;
+            keep_picture(&mut status, &folder);
+            return touched(contacts);
+        }
+        coverage::demo::NAME => {
+            let (folder, run) = coverage::demo::run(options, &mut status)?;
+            keep_picture(&mut status, &folder);
+            return touched(run.summary.contacts_while_moving());
+        }
+        demo::VALLEY => return touched(demo::valley(options, &mut status)?),
+        _ => {}
     }
     let mut contacts = 0;
-    if options.scenario == decide::NAME {
-        let (folder, touched) = decide::demonstrate(options, &SIGNALS, &mut status)?;
-        status.keep(&format!(
-            "picture: {}\n",
-            folder.join("picture.svg").display()
-        ));
-        return match touched {
-            0 => Ok(ExitCode::SUCCESS),
-            _ => Err(format!("the robot touched something {touched} times while it moved").into()),
-        };
-    }
-    if options.scenario == coverage::demo::NAME {
-        let (folder, run) = coverage::demo::run(options, &mut status)?;
-        let picture = folder.join("picture.svg");
-        status.keep(&format!("picture: {}\n", picture.display()));
-        return match run.summary.contacts_while_moving() {
-            0 => Ok(ExitCode::SUCCESS),
-            contacts => {
-                Err(format!("the robot touched something {contacts} times while it moved").into())
-            }
-        };
-    }
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();
-        status.keep(&format!(
-            "picture: {}\n",
-            folder.join("picture.svg").display()
-        ));
+        keep_picture(&mut status, &folder);
         if summary.ending == Ending::Operator {
             break;
         }
     }
+    touched(contacts)
+}
+
+/// Success if nothing was touched while the robot moved.
+fn touched(contacts: u32) -> Result<ExitCode, Box<dyn Error>> {
     if contacts > 0 {
         return Err(format!("the robot touched something {contacts} times while it moved").into());
     }
