@@ -17,6 +17,7 @@ pub mod episodes;
 pub mod faults;
 pub mod gestures;
 pub mod log;
+pub mod meet;
 pub mod pilot;
 pub mod replay;
 pub mod session;
