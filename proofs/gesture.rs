@@ -45,25 +45,14 @@ pub fn any_gesture() -> Gesture {
     Gesture::ALL[usize::from(kani::any::<u8>()) % Gesture::COUNT]
 }
 
-/// What a skeleton of any bit patterns gives is features, or a rejection; a joint that is not
-/// tracked is always a rejection.
+/// Features exist only within their limit, whatever numbers they are made of. `Features::of` ends in
+/// this constructor.
 //= gesture.INV-1
-//= gesture.INV-3
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(12))]
-#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-pub fn features_are_judged() {
-    let skeleton = any_skeleton();
-    let whole = skeleton.neck.is_some()
-        && skeleton.left_shoulder.is_some()
-        && skeleton.right_shoulder.is_some()
-        && skeleton.left_elbow.is_some()
-        && skeleton.right_elbow.is_some()
-        && skeleton.left_wrist.is_some()
-        && skeleton.right_wrist.is_some();
-    let features = Features::of(&skeleton);
-    assert!(law::whole_or_rejected(whole, features.is_ok()));
+pub fn features_are_bounded() {
+    let features = Features::new(kani::any(), kani::any());
     if let Ok(features) = &features {
         assert!(law::features_in_range(
             features.six(),
@@ -71,8 +60,31 @@ pub fn features_are_judged() {
             Features::LIMIT
         ));
     }
-    kani::cover!(whole && features.is_err(), "whole and yet rejected");
-    kani::cover!(!whole, "a joint is not tracked");
+    kani::cover!(features.is_ok(), "features");
+    kani::cover!(features.is_err(), "none");
+}
+
+/// A skeleton of any bit patterns with a joint that is not tracked is rejected.
+//= gesture.INV-3
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(12))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+pub fn untracked_joint_is_rejected() {
+    let mut skeleton = any_skeleton();
+    let missing = kani::any::<u8>() % 7;
+    match missing {
+        0 => skeleton.neck = None,
+        1 => skeleton.left_shoulder = None,
+        2 => skeleton.right_shoulder = None,
+        3 => skeleton.left_elbow = None,
+        4 => skeleton.right_elbow = None,
+        5 => skeleton.left_wrist = None,
+        _ => skeleton.right_wrist = None,
+    }
+    let features = Features::of(&skeleton);
+    assert!(law::whole_or_rejected(false, features.is_ok()));
+    kani::cover!(missing == 6, "the last joint");
 }
 
 /// A weighted sum is finite for any weights that a model may have and any features there are, and
@@ -96,35 +108,49 @@ pub fn scores_are_finite() {
     kani::cover!(activation < -0.9, "a small activation");
 }
 
-/// What is accepted is the nearest class by the least margin, and lies in its box: for any claim of
-/// what is nearest, NaN margins included, with both models as trained.
+/// What is accepted is the nearest class by the least margin, and no more unlike it than the
+/// greatest unlikeness: for any claims of both, NaN included, with both models as trained.
 //= gesture.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(12))]
 pub fn accepted_pose_is_clear() {
     let model = if kani::any() {
         Model::NEURAL_NETWORK
     } else {
         Model::SUPPORT_VECTOR_MACHINE
     };
-    let features = any_features();
     let nearest = Nearest {
         gesture: any_gesture(),
         margin: kani::any(),
     };
-    let claim = if kani::any() { Some(nearest) } else { None };
-    let judged = model.judge(claim, &features);
+    let unlikeness = kani::any();
+    let judged = model.judge(&nearest, unlikeness);
     if let Ok(gesture) = judged {
         assert!(law::is_clear(
-            claim == Some(nearest) && gesture == nearest.gesture,
+            gesture == nearest.gesture,
             nearest.margin,
             model.margin(),
-            model.envelope().holds(gesture, &features)
+            unlikeness,
+            model.unlikeness()
         ));
     }
+    kani::cover!(judged.is_ok(), "accepted");
     kani::cover!(nearest.margin.is_nan(), "no margin");
-    kani::cover!(claim.is_none(), "no class");
+    kani::cover!(nearest.margin > 1.0 && judged.is_err(), "unlike");
+}
+
+/// How unlike a class any features are is a finite number, for both models as trained.
+//= gesture.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(12))]
+pub fn unlikeness_is_finite() {
+    let model = Model::NEURAL_NETWORK;
+    let unlikeness = model
+        .prototypes()
+        .unlikeness(any_gesture(), &any_features());
+    assert!(law::is_score(unlikeness) && unlikeness >= 0.0);
+    kani::cover!(unlikeness > 1.0, "unlike");
 }
 
 /// The winner by a margin that is not negative beats all others, for any finite scores.

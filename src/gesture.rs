@@ -600,74 +600,88 @@ pub fn squashed(x: f32) -> f32 {
     x / (1.0 + x.abs())
 }
 
-/// Least and greatest of a feature.
-pub type Range = (f32, f32);
+/// Mean and standard deviation of a feature.
+pub type Usual = (f32, f32);
+/// The least standard deviation of a feature: what is closer together is a mistake.
+const SPREAD_MIN: f32 = 0.01;
 
-/// Where a class lies: least and greatest of each feature.
+/// How a class usually is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bounds {
-    /// Of S3's six.
-    pub six: [Range; Features::COUNT],
-    /// Of the four more.
-    pub arms: [Range; Features::ARMS],
+pub struct Prototype {
+    /// S3's six.
+    pub six: [Usual; Features::COUNT],
+    /// The four more.
+    pub arms: [Usual; Features::ARMS],
 }
 
-/// The box of features in which each class lies.
+/// How each class usually is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Envelope([Bounds; Gesture::COUNT]);
+pub struct Prototypes([Prototype; Gesture::COUNT]);
 
-impl Envelope {
-    /// The boxes, by [`Gesture::index`].
+impl Prototypes {
+    /// The prototypes, by [`Gesture::index`].
     ///
     /// # Errors
-    /// [`OutOfRange`] if a bound is not finite or beyond ±[`Features::LIMIT`], or if a greatest is
-    /// below its least.
-    pub fn new(boxes: [Bounds; Gesture::COUNT]) -> Result<Self, OutOfRange> {
-        for bounds in &boxes {
-            let six = Features::NAMES.iter().zip(&bounds.six);
-            let arms = Features::ARM_NAMES.iter().zip(&bounds.arms);
-            for (name, (least, greatest)) in six.chain(arms) {
-                let least = within(name, *least)?;
-                in_range(name, *greatest, least, Features::LIMIT, "arm lengths")?;
+    /// [`OutOfRange`] if a mean is beyond ±[`Features::LIMIT`], or a standard deviation outside 0.01
+    /// to [`Features::LIMIT`].
+    pub fn new(prototypes: [Prototype; Gesture::COUNT]) -> Result<Self, OutOfRange> {
+        for prototype in &prototypes {
+            let six = Features::NAMES.iter().zip(&prototype.six);
+            let arms = Features::ARM_NAMES.iter().zip(&prototype.arms);
+            for (name, (mean, spread)) in six.chain(arms) {
+                within(name, *mean)?;
+                in_range(name, *spread, SPREAD_MIN, Features::LIMIT, "arm lengths")?;
             }
         }
-        Ok(Self(boxes))
+        Ok(Self(prototypes))
     }
 
-    /// Whether the features lie in the class's box, its faces included.
+    /// How unlike a class features are. Of the squared distances of all ten from the class's means,
+    /// in standard deviations, it is the mean, or a quarter of the greatest if that is more: many
+    /// that are somewhat off count, and so does one that is far off. 1 is usual. Finite and not
+    /// negative.
     #[must_use]
-    pub fn holds(&self, gesture: Gesture, features: &Features) -> bool {
-        let bounds = &self.0[gesture.index()];
+    pub fn unlikeness(&self, gesture: Gesture, features: &Features) -> f32 {
+        let prototype = &self.0[gesture.index()];
+        let mut sum = 0.0_f32;
+        let mut greatest = 0.0_f32;
         let mut i = 0;
         while i < Features::COUNT {
-            if !between(bounds.six[i], features.six[i]) {
-                return false;
-            }
+            let square = squared_deviation(prototype.six[i], features.six[i]);
+            sum += square;
+            greatest = greatest.max(square);
             i += 1;
         }
         let mut i = 0;
         while i < Features::ARMS {
-            if !between(bounds.arms[i], features.arms[i]) {
-                return false;
-            }
+            let square = squared_deviation(prototype.arms[i], features.arms[i]);
+            sum += square;
+            greatest = greatest.max(square);
             i += 1;
         }
-        true
+        let mean = sum / (Features::COUNT + Features::ARMS) as f32;
+        mean.max(0.25 * greatest)
     }
 
-    /// The boxes, by [`Gesture::index`].
+    /// The prototypes, by [`Gesture::index`].
     #[must_use]
-    pub const fn bounds(&self) -> &[Bounds; Gesture::COUNT] {
+    pub const fn get(&self) -> &[Prototype; Gesture::COUNT] {
         &self.0
     }
 }
 
-fn between((least, greatest): Range, value: f32) -> bool {
-    least <= value && value <= greatest
+/// The squared distance from the mean, in standard deviations.
+fn squared_deviation((mean, spread): Usual, value: f32) -> f32 {
+    let deviation = (value - mean) / spread;
+    deviation * deviation
 }
 
 /// What tells the classes apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "nothing here allocates, and there is one of them"
+)]
 pub enum Classifier {
     /// S3's linear support vector machine.
     SupportVectorMachine(SupportVectorMachine),
@@ -680,7 +694,8 @@ pub enum Classifier {
 pub struct Model {
     classifier: Classifier,
     margin: f32,
-    envelope: Envelope,
+    unlikeness: f32,
+    prototypes: Prototypes,
 }
 
 impl Model {
@@ -688,33 +703,40 @@ impl Model {
     pub const SUPPORT_VECTOR_MACHINE: Self = Self {
         classifier: Classifier::SupportVectorMachine(weights::SUPPORT_VECTOR_MACHINE),
         margin: Self::SVM_MARGIN,
-        envelope: weights::ENVELOPE,
+        unlikeness: Self::UNLIKENESS,
+        prototypes: weights::PROTOTYPES,
     };
     /// The net as trained.
     pub const NEURAL_NETWORK: Self = Self {
         classifier: Classifier::NeuralNetwork(weights::NEURAL_NETWORK),
         margin: Self::NET_MARGIN,
-        envelope: weights::ENVELOPE,
+        unlikeness: Self::UNLIKENESS,
+        prototypes: weights::PROTOTYPES,
     };
     /// The winner of a support vector machine has to win every duel by half of what separates the
     /// classes' nearest samples.
     pub const SVM_MARGIN: f32 = 0.5;
     /// Each output of the net has to be this far from undecided: as an activation ±½.
     pub const NET_MARGIN: f32 = 1.0;
+    /// The greatest [`Prototypes::unlikeness`] with which a pose is of a class.
+    pub const UNLIKENESS: f32 = 4.0;
 
-    /// A classifier, the least margin by which a class has to be the one, and the classes' boxes.
+    /// A classifier, the least margin by which a class has to be the nearest, the greatest
+    /// unlikeness with which a pose is of it, and how the classes usually are.
     ///
     /// # Errors
-    /// [`OutOfRange`] if the margin is not in [0, 10⁶].
+    /// [`OutOfRange`] if the margin is not in [0, 10⁶] or the unlikeness not in [1, 100].
     pub fn new(
         classifier: Classifier,
         margin: f32,
-        envelope: Envelope,
+        unlikeness: f32,
+        prototypes: Prototypes,
     ) -> Result<Self, OutOfRange> {
         Ok(Self {
             classifier,
             margin: in_range("margin", margin, 0.0, WEIGHT_MAX, "")?,
-            envelope,
+            unlikeness: in_range("unlikeness", unlikeness, 1.0, 100.0, "")?,
+            prototypes,
         })
     }
 
@@ -730,38 +752,34 @@ impl Model {
     /// The gesture that the features are.
     ///
     /// # Errors
-    /// As [`Self::judge`].
+    /// [`Rejection::Ambiguous`] if no class is nearest; else as [`Self::judge`].
     pub fn classify(&self, features: &Features) -> Result<Gesture, Rejection> {
-        self.judge(self.nearest(features), features)
+        let nearest = self.nearest(features).ok_or(Rejection::Ambiguous)?;
+        let unlikeness = self.prototypes.unlikeness(nearest.gesture, features);
+        self.judge(&nearest, unlikeness)
     }
 
-    /// Whether features are of the class that is nearest to them.
+    /// Whether a pose is of the class that is nearest to it, as unlike it as it is.
     ///
     /// # Errors
-    /// [`Rejection::Ambiguous`] if there is none, or not by the least margin;
-    /// [`Rejection::Unlike`] if the features lie outside its box.
+    /// [`Rejection::Ambiguous`] if the margin is less than the least; [`Rejection::Unlike`] if the
+    /// unlikeness is more than the greatest.
     //= gesture.INV-5
-    pub fn judge(
-        &self,
-        nearest: Option<Nearest>,
-        features: &Features,
-    ) -> Result<Gesture, Rejection> {
-        match nearest {
-            Some(Nearest { gesture, margin }) if margin >= self.margin => {
-                if self.envelope.holds(gesture, features) {
-                    Ok(gesture)
-                } else {
-                    Err(Rejection::Unlike(gesture))
-                }
-            }
-            _ => Err(Rejection::Ambiguous),
+    pub fn judge(&self, nearest: &Nearest, unlikeness: f32) -> Result<Gesture, Rejection> {
+        // Comparisons with NaN are false: it is neither clear nor like.
+        let clear = nearest.margin >= self.margin;
+        let like = unlikeness <= self.unlikeness;
+        match (clear, like) {
+            (false, _) => Err(Rejection::Ambiguous),
+            (true, false) => Err(Rejection::Unlike(nearest.gesture)),
+            (true, true) => Ok(nearest.gesture),
         }
     }
 
     /// The gesture that a skeleton shows.
     ///
     /// # Errors
-    /// As [`Features::of`] and [`Self::judge`].
+    /// As [`Features::of`] and [`Self::classify`].
     pub fn recognize(&self, skeleton: &Skeleton) -> Result<Gesture, Rejection> {
         self.classify(&Features::of(skeleton)?)
     }
@@ -778,10 +796,16 @@ impl Model {
         self.margin
     }
 
-    /// The classes' boxes.
+    /// The greatest unlikeness with which a pose is of a class.
     #[must_use]
-    pub const fn envelope(&self) -> &Envelope {
-        &self.envelope
+    pub const fn unlikeness(&self) -> f32 {
+        self.unlikeness
+    }
+
+    /// How the classes usually are.
+    #[must_use]
+    pub const fn prototypes(&self) -> &Prototypes {
+        &self.prototypes
     }
 }
 

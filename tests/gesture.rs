@@ -7,8 +7,8 @@ use proptest::array::UniformArrayStrategy;
 use proptest::prelude::*;
 use proptest::sample::select;
 use sidestep::gesture::{
-    Classifier, Debounce, Envelope, Features, Frame, Gesture, Model, NeuralNetwork, PEOPLE_MAX,
-    Person, Point, Recognizer, Rejection, Settings, Skeleton, SupportVectorMachine,
+    Classifier, Debounce, Features, Frame, Gesture, Model, NeuralNetwork, PEOPLE_MAX, Person,
+    Point, Prototypes, Recognizer, Rejection, Settings, Skeleton, SupportVectorMachine,
 };
 use sidestep::quantity::Instant;
 use sidestep_spec::gesture as law;
@@ -281,6 +281,10 @@ proptest! {
                     prop_assert!(outputs.iter().all(|output| law::is_score(*output)));
                 }
             }
+            for gesture in Gesture::ALL {
+                let unlikeness = model.prototypes().unlikeness(gesture, &features);
+                prop_assert!(law::is_score(unlikeness) && unlikeness >= 0.0);
+            }
         }
     }
 
@@ -294,7 +298,8 @@ proptest! {
                     nearest.gesture == gesture,
                     nearest.margin,
                     model.margin(),
-                    model.envelope().holds(gesture, &features),
+                    model.prototypes().unlikeness(gesture, &features),
+                    model.unlikeness(),
                 ));
             }
         }
@@ -332,6 +337,25 @@ proptest! {
         }
         if let Some(nearest) = net.nearest(&features) {
             prop_assert!(law::is_spelled(nearest.gesture.code(), &outputs));
+        }
+    }
+
+    #[test]
+    fn unlikeness_is_the_references(features in features()) {
+        let prototypes = *Model::default().prototypes();
+        for gesture in Gesture::ALL {
+            let prototype = &prototypes.get()[gesture.index()];
+            let usual: Vec<(f64, f64)> = prototype
+                .six
+                .iter()
+                .chain(&prototype.arms)
+                .map(|(mean, spread)| (f64::from(*mean), f64::from(*spread)))
+                .collect();
+            let values = features.six().iter().chain(features.arms());
+            let values: Vec<f64> = values.copied().map(f64::from).collect();
+            let wanted = law::unlikeness(&usual, &values);
+            let got = f64::from(prototypes.unlikeness(gesture, &features));
+            prop_assert!((got - wanted).abs() <= 1e-3 * wanted.max(1.0));
         }
     }
 
@@ -475,7 +499,7 @@ fn weights_are_in_range() {
                 NeuralNetwork::new(*hidden, *output).expect("weights");
             }
         }
-        Envelope::new(*model.envelope().bounds()).expect("boxes");
+        Prototypes::new(*model.prototypes().get()).expect("prototypes");
     }
 }
 
@@ -487,9 +511,9 @@ fn bad_weights_and_settings_are_refused_by_name() {
         SupportVectorMachine::new(planes).unwrap_err().field,
         "weight"
     );
-    let mut bounds = *Model::default().envelope().bounds();
-    bounds[3].arms[1] = (0.5, 0.4);
-    let error = Envelope::new(bounds).unwrap_err();
+    let mut prototypes = *Model::default().prototypes().get();
+    prototypes[3].arms[1] = (0.5, 0.0);
+    let error = Prototypes::new(prototypes).unwrap_err();
     assert_eq!(error.field, Features::ARM_NAMES[1]);
     for settings in [
         Settings {

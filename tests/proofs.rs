@@ -130,7 +130,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         turn_is_at_most_half, maneuver_turns_away, maneuver_speed_is_bounded, modes_settle,
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
-    gesture: features_are_judged, scores_are_finite, accepted_pose_is_clear, winner_beats_all,
+    gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
+        unlikeness_is_finite, winner_beats_all,
         outputs_spell_the_class, gesture_counts_after_enough_frames;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;

@@ -110,7 +110,8 @@ fn judged(model: &Model, features: &Features) {
             nearest.gesture == gesture,
             nearest.margin,
             model.margin(),
-            model.envelope().holds(gesture, features)
+            model.prototypes().unlikeness(gesture, features),
+            model.unlikeness()
         ));
     }
 }

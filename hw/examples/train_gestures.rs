@@ -15,8 +15,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use sidestep::gesture::{
-    Bounds, Classifier, Envelope, Features, Gesture, HIDDEN, Model, NeuralNetwork, OUTPUTS, Point,
-    Range, Rejection, Skeleton, SupportVectorMachine, Weights,
+    Classifier, Features, Gesture, HIDDEN, Model, NeuralNetwork, OUTPUTS, Point, Prototype,
+    Prototypes, Rejection, Skeleton, SupportVectorMachine, Usual, Weights,
 };
 use sidestep_sim::skeleton::{Body, CameraErrors, HEIGHTS, Place, Pose};
 use std::error::Error;
@@ -409,11 +409,8 @@ impl Net {
     }
 }
 
-/// How far from its mean, in standard deviations, a feature of a class may lie.
-const SPREADS: f64 = 4.0;
-
-/// Each class's box: mean ± [`SPREADS`] standard deviations of each feature.
-fn boxes(set: &[&Sample]) -> [Bounds; Gesture::COUNT] {
+/// How each class usually is.
+fn prototypes(set: &[&Sample]) -> [Prototype; Gesture::COUNT] {
     Gesture::ALL.map(|gesture| {
         let of_class = |feature: &dyn Fn(&Features) -> f32| {
             let values: Vec<f64> = set
@@ -421,28 +418,29 @@ fn boxes(set: &[&Sample]) -> [Bounds; Gesture::COUNT] {
                 .filter(|sample| sample.gesture == gesture)
                 .map(|sample| f64::from(feature(&sample.features)))
                 .collect();
-            range(&values)
+            usual(&values)
         };
-        Bounds {
+        Prototype {
             six: core::array::from_fn(|i| of_class(&|features| features.six()[i])),
             arms: core::array::from_fn(|i| of_class(&|features| features.arms()[i])),
         }
     })
 }
 
-fn range(values: &[f64]) -> Range {
+fn usual(values: &[f64]) -> Usual {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / count;
-    let reach = SPREADS * variance.sqrt();
-    let limit = f64::from(Features::LIMIT);
-    // To the thousandth of an arm: half a millimetre.
-    let round = |x: f64| ((x.clamp(-limit, limit) * 1000.0).round() / 1000.0) as f32;
-    (round(mean - reach), round(mean + reach))
+    // To the ten-thousandth of an arm: nobody reads more.
+    let round = |x: f64| ((x * 10_000.0).round() / 10_000.0) as f32;
+    (round(mean), round(variance.sqrt()))
 }
 
-/// Splits by person: what to train on, what to test on, for each fold.
-fn folds(set: &[Sample], count: usize) -> Result<Vec<(Vec<&Sample>, Vec<&Sample>)>, String> {
+/// What to train on, and what to test on.
+type Fold<'a> = (Vec<&'a Sample>, Vec<&'a Sample>);
+
+/// Splits by person.
+fn folds(set: &[Sample], count: usize) -> Result<Vec<Fold<'_>>, String> {
     let mut people: Vec<usize> = set.iter().map(|sample| sample.person).collect();
     people.sort_unstable();
     people.dedup();
@@ -637,6 +635,41 @@ fn confusion(name: &str, model: &Model, people: u64, seed: u64) -> Result<(), Bo
     Ok(())
 }
 
+/// Prints how unlike their own class frames of new people are: what the limit of unlikeness is for.
+fn likeness(model: &Model, people: u64, seed: u64) -> Result<(), Box<dyn Error>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    println!("\nUnlikeness of frames of {people} new people to their own class");
+    println!("| gesture | median | 99 % | 99.9 % | greatest |");
+    println!("|---|---|---|---|---|");
+    let mut values: Vec<Vec<f32>> = vec![Vec::new(); Gesture::COUNT];
+    for _ in 0..people {
+        let mut body = Body::any(CameraErrors::default(), rng.random())?;
+        for gesture in Gesture::ALL {
+            for _ in 0..8 {
+                body.change_mood();
+                let place = any_place(&mut rng);
+                if let Ok(features) = Features::of(&body.skeleton(1, Pose::of(gesture), place)) {
+                    let unlikeness = model.prototypes().unlikeness(gesture, &features);
+                    values[gesture.index()].push(unlikeness);
+                }
+            }
+        }
+    }
+    for gesture in Gesture::ALL {
+        let values = &mut values[gesture.index()];
+        values.sort_by(f32::total_cmp);
+        let at = |share: f64| values[((values.len() - 1) as f64 * share) as usize];
+        println!(
+            "| {gesture} | {:.2} | {:.2} | {:.2} | {:.2} |",
+            at(0.5),
+            at(0.99),
+            at(0.999),
+            at(1.0)
+        );
+    }
+    Ok(())
+}
+
 /// What a pose that is no gesture is taken for: shares of the frames, in per cent.
 #[derive(Clone, Copy, Default)]
 struct Taken {
@@ -738,16 +771,21 @@ fn rejections(models: &[(&str, Model)], people: u64, seed: u64) -> Result<(), Bo
 }
 
 /// The weights as Rust.
-fn source(from: &str, machine: &[Weights], net: &Net, boxes: &[Bounds; Gesture::COUNT]) -> String {
+fn source(
+    from: &str,
+    machine: &[Weights],
+    net: &Net,
+    prototypes: &[Prototype; Gesture::COUNT],
+) -> String {
     let row = |weights: &[f32]| {
         let numbers: Vec<String> = weights.iter().map(|w| format!("{w:?}")).collect();
         format!("[{}],\n", numbers.join(", "))
     };
     let mut text = format!(
-        "//! Weights of both models and the boxes of the classes. Generated: do not edit.\n//!\n\
+        "//! Weights of both models and prototypes of the classes. Generated: do not edit.\n//!\n\
          //! `cargo run --release -p sidestep-hw --example train_gestures -- --write FILE`\n\
          //! from {from}.\n\n\
-         use super::{{Bounds, Envelope, NeuralNetwork, SupportVectorMachine}};\n\n\
+         use super::{{NeuralNetwork, Prototype, Prototypes, SupportVectorMachine}};\n\n\
          /// One plane for each pair of classes.\n\
          pub(super) const SUPPORT_VECTOR_MACHINE: SupportVectorMachine = SupportVectorMachine {{\nplanes: [\n"
     );
@@ -763,10 +801,10 @@ fn source(from: &str, machine: &[Weights], net: &Net, boxes: &[Bounds; Gesture::
     for neuron in &net.output {
         text += &row(&neuron.iter().map(|w| *w as f32).collect::<Vec<_>>());
     }
-    text += "],\n};\n\n/// Where each class lies, feature by feature.\n\
-             pub(super) const ENVELOPE: Envelope = Envelope([\n";
-    for Bounds { six, arms } in boxes {
-        text += &format!("Bounds {{ six: {six:?}, arms: {arms:?} }},\n");
+    text += "],\n};\n\n/// How each class usually is: mean and standard deviation of each feature.\n\
+             pub(super) const PROTOTYPES: Prototypes = Prototypes([\n";
+    for Prototype { six, arms } in prototypes {
+        text += &format!("Prototype {{ six: {six:?}, arms: {arms:?} }},\n");
     }
     text + "]);\n"
 }
@@ -799,15 +837,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let all: Vec<&Sample> = full.iter().collect();
     let (machine, _) = train_machine(&all, penalty)?;
     let net = Net::train(&all, HIDDEN, arguments.seed);
-    let boxes = boxes(&all);
-    let envelope = Envelope::new(boxes)?;
+    let usual = prototypes(&all);
+    let prototypes = Prototypes::new(usual)?;
     let models = [
         (
             "support vector machine",
             Model::new(
                 Classifier::SupportVectorMachine(machine),
                 Model::SVM_MARGIN,
-                envelope,
+                Model::UNLIKENESS,
+                prototypes,
             )?,
         ),
         (
@@ -815,7 +854,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             Model::new(
                 Classifier::NeuralNetwork(net.single()?),
                 Model::NET_MARGIN,
-                envelope,
+                Model::UNLIKENESS,
+                prototypes,
             )?,
         ),
     ];
@@ -824,9 +864,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, model) in &models {
         confusion(name, model, 500, arguments.seed + 3)?;
     }
+    likeness(&models[1].1, 500, arguments.seed + 3)?;
     rejections(&models, 100, arguments.seed + 4)?;
     if let Some(path) = &arguments.write {
-        std::fs::write(path, source(&from, machine.planes(), &net, &boxes))?;
+        std::fs::write(path, source(&from, machine.planes(), &net, &usual))?;
         println!("\nwrote {}: run cargo fmt", path.display());
     }
     // S3 reports 98.2 % and no error.

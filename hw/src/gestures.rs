@@ -5,7 +5,7 @@ use crate::config::RobotConfig;
 use crate::demo::{Options, run_folder};
 use crate::drive::{Clock, Signals};
 use crate::encounter::{self, Camera, Cue, Encounter, Happening, Met, Showing};
-use crate::skeletons;
+use crate::skeletons::{self, CameraClock};
 use serde_json::{Value, json};
 use sidestep::gesture::{
     Frame, Gesture, Model, PEOPLE_MAX, Person, Recognizer, Rejection, Settings, Skeleton,
@@ -26,7 +26,9 @@ use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 ///
 /// `{"t":1200,"id":7,"pose":"stop","gesture":"stop"}`: `pose` is what this frame shows, `gesture` what
 /// counts; instead of a pose there is why none was recognised, `"rejected":"…"`. Whoever is seen no
-/// more is `{"t":…,"id":…,"gone":true}`. A bad line is `{"error":"…"}`.
+/// more is `{"t":…,"id":…,"gone":true}`. A bad line is `{"error":"…"}`. A frame that took longer to
+/// arrive than frames may be apart is `{"t":…,"late":…}`, in ms, and the first that is not
+/// `{"t":…,"late":0}`. `now` gives the time of arrival, ms.
 ///
 /// # Errors
 /// If a setting is out of range, or nothing can be written.
@@ -34,8 +36,11 @@ pub fn watch(
     frames: impl Iterator<Item = Result<Frame, String>>,
     model: Model,
     settings: Settings,
+    mut now: impl FnMut() -> u64,
     out: &mut impl Write,
 ) -> Result<(), Box<dyn Error>> {
+    let mut clock = CameraClock::default();
+    let mut late = false;
     let mut recognizer = Recognizer::new(model, settings)?;
     let mut known: Vec<(u64, Value)> = Vec::new();
     for frame in frames {
@@ -47,6 +52,13 @@ pub fn watch(
             }
         };
         let t = frame.taken_at.0;
+        let arrived = now();
+        let age = arrived.saturating_sub(clock.taken(frame.taken_at, arrived).0);
+        if (age > settings.frame_age_max) != late {
+            late = !late;
+            let age = if late { age } else { 0 };
+            writeln!(out, "{}", json!({"t": t, "late": age}))?;
+        }
         let mut seen = Vec::new();
         for person in recognizer.update(&frame).iter().flatten() {
             let shown = told(person);
@@ -437,7 +449,7 @@ fn figure(skeleton: &Skeleton, ink: &str) -> Group {
 pub fn draw(met: &Met, looks: &[Look]) -> String {
     let chosen = chosen(looks);
     let rows = chosen.len().div_ceil(CELLS);
-    let strip = rows as f64 * 190.0;
+    let strip = rows as f64 * 175.0;
     let end = met
         .simulation
         .trace()
@@ -446,7 +458,7 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
         .max(1) as f64;
     let x = |t: u64| MARGIN + (WIDTH - MARGIN - 20.0) * t as f64 / end;
     let top = 50.0 + strip;
-    let height = top + 6.0 * LANE + 170.0;
+    let height = top + 6.0 * LANE + 130.0;
     let mut document = Document::new()
         .set("viewBox", (0.0, 0.0, WIDTH, height))
         .set("width", WIDTH)
@@ -469,7 +481,7 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
 
     for (i, look) in chosen.iter().enumerate() {
         let left = (i % CELLS) as f64 * CELL;
-        let upper = 40.0 + (i / CELLS) as f64 * 190.0;
+        let upper = 40.0 + (i / CELLS) as f64 * 175.0;
         let counting = look.person.and_then(|person| person.gesture);
         let (ink, words) = match (counting, look.person.map(|person| person.pose)) {
             (Some(gesture), _) => (COUNTS, gesture.to_string()),
@@ -508,22 +520,18 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
     {
         document = document.add(text(8.0, lane(number as f64) + 15.0, 13.0, name));
     }
-    let shown = |look: &Look| Some(look.shown.unwrap_or(Gesture::Rest));
-    let recognised = |look: &Look| look.person.and_then(|person| person.pose.ok());
-    let counts = |look: &Look| look.person.and_then(|person| person.gesture);
-    let lanes: [&dyn Fn(&Look) -> Option<Gesture>; 3] = [&shown, &recognised, &counts];
+    let lanes: [fn(&Look) -> Option<Gesture>; 3] = [
+        |look| Some(look.shown.unwrap_or(Gesture::Rest)),
+        |look| look.person.and_then(|person| person.pose.ok()),
+        |look| look.person.and_then(|person| person.gesture),
+    ];
     for (number, of) in lanes.into_iter().enumerate() {
         for run in looks.chunk_by(|one, other| of(one) == of(other)) {
-            let (Some(first), Some(last)) = (run.first(), run.last()) else {
-                continue;
-            };
-            if let Some(gesture) = of(first) {
-                document = document.add(bar(
-                    number as f64,
-                    first.t,
-                    last.t + FRAME_MS,
-                    colour(gesture),
-                ));
+            if let (Some(first), Some(last)) = (run.first(), run.last())
+                && let Some(gesture) = of(first)
+            {
+                let end = last.t + FRAME_MS;
+                document = document.add(bar(number as f64, first.t, end, colour(gesture)));
             }
         }
     }
@@ -544,30 +552,34 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
             document = document.add(text(x(*from) + 3.0, lane(3.0) + 15.0, 11.0, name));
         }
     }
+    let mut said = 0;
     for happening in &met.happenings {
         if let Event::Say(announcement) = happening.event {
+            // Words that follow closely stand one below the other.
+            let below = 12.0 * f64::from(said % 3);
+            said += 1;
             document = document
                 .add(
                     Line::new()
                         .set("x1", x(happening.t))
                         .set("x2", x(happening.t))
                         .set("y1", lane(3.0))
-                        .set("y2", lane(4.0) + 8.0)
+                        .set("y2", lane(4.0) + 8.0 + below)
                         .set("stroke", INK),
                 )
                 .add(text(
                     x(happening.t) + 3.0,
-                    lane(4.0) + 10.0,
+                    lane(4.0) + 10.0 + below,
                     10.0,
                     &format!("“{}”", announcement.text()),
                 ));
         }
     }
-    document = document.add(speeds(met, &x, lane(5.0)));
+    document = document.add(speeds(met, &x, lane(6.0)));
     for second in (0..=(end as u64 / 1000)).step_by(5) {
         document = document.add(text(
             x(second * 1000) - 4.0,
-            lane(5.0) + 85.0,
+            lane(6.0) + 85.0,
             11.0,
             &format!("{second} s"),
         ));
@@ -578,16 +590,16 @@ pub fn draw(met: &Met, looks: &[Look]) -> String {
             .add(
                 Rectangle::new()
                     .set("x", left)
-                    .set("y", lane(5.0) + 100.0)
+                    .set("y", lane(6.0) + 100.0)
                     .set("width", 14)
                     .set("height", 14)
                     .set("fill", colour(gesture)),
             )
-            .add(text(left + 18.0, lane(5.0) + 112.0, 12.0, gesture.name()));
+            .add(text(left + 18.0, lane(6.0) + 112.0, 12.0, gesture.name()));
         left += 120.0;
     }
     document
-        .add(text(left, lane(5.0) + 112.0, 12.0, "white: none"))
+        .add(text(left, lane(6.0) + 112.0, 12.0, "white: none"))
         .to_string()
 }
 

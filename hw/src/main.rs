@@ -367,7 +367,9 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 ..gesture::Settings::default()
             };
             let lines = Lines::open(&source)?;
-            gestures::watch(lines, model.into(), settings, &mut std::io::stdout().lock())?;
+            let clock = Clock::new(1.0);
+            let mut out = std::io::stdout().lock();
+            gestures::watch(lines, model.into(), settings, || clock.now(), &mut out)?;
             Ok(ExitCode::SUCCESS)
         }
         Command::Config { meeting } => {

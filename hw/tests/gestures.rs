@@ -4,6 +4,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
+use sidestep::arcos::{HostCommand, MAX_FRAME};
 use sidestep::gesture::{Gesture, Model, PEOPLE_MAX, Rejection, Settings};
 use sidestep::interact::Announcement;
 use sidestep::quantity::Instant;
@@ -12,7 +13,8 @@ use sidestep_hw::config::RobotConfig;
 use sidestep_hw::gestures;
 use sidestep_hw::skeletons::{CameraClock, Lines, parse, to_line};
 use sidestep_sim::skeleton::{Body, CameraErrors, Place, Pose};
-use std::io::Cursor;
+use std::io::{Cursor, Write};
+use std::process::{Command, Stdio};
 
 const MODELS: [(&str, Model); 2] = [
     ("net", Model::NEURAL_NETWORK),
@@ -64,7 +66,7 @@ fn new_people_are_understood() {
     }
 }
 
-/// The stated rate: 97 of 100 frames of poses outside the classes are rejected.
+/// The stated rate: 98 of 100 frames of poses outside the classes are rejected.
 #[test]
 fn poses_of_daily_life_are_rejected() {
     let poses: Vec<(Pose, Option<Gesture>)> =
@@ -73,7 +75,7 @@ fn poses_of_daily_life_are_rejected() {
         let [_, taken, rejected] = tally(&model, &poses, 200);
         let share = f64::from(rejected) / f64::from(taken + rejected);
         println!("{name}: {share:.4} rejected");
-        assert!(share > 0.97, "{name}: {share}");
+        assert!(share > 0.98, "{name}: {share}");
     }
 }
 
@@ -218,19 +220,65 @@ fn watching_tells_what_changes() {
     frames.insert(5, Err("test:6: bad".to_owned()));
     let mut out = Vec::new();
     let settings = Settings::default();
-    gestures::watch(frames.into_iter(), Model::default(), settings, &mut out).expect("written");
+    // The last of them come half a second late.
+    let mut arrived = 0;
+    let now = || {
+        arrived += 33;
+        if arrived > 33 * 27 {
+            arrived + 500
+        } else {
+            arrived
+        }
+    };
+    gestures::watch(
+        frames.into_iter(),
+        Model::default(),
+        settings,
+        now,
+        &mut out,
+    )
+    .expect("written");
     let told: Vec<Value> = String::from_utf8(out)
         .expect("text")
         .lines()
         .map(|line| serde_json::from_str(line).expect("JSON"))
         .collect();
-    assert_eq!(told.len(), 4, "{told:#?}");
+    assert_eq!(told.len(), 5, "{told:#?}");
     assert_eq!(told[0]["pose"], "forward");
     assert_eq!(told[0]["gesture"], Value::Null);
     assert_eq!(told[1]["error"], "test:6: bad");
     assert_eq!(told[2]["gesture"], "forward");
     assert_eq!(told[2]["t"], 1000 + 33 * (u64::from(settings.frames) - 1));
     assert_eq!(told[3]["gone"], true);
+    assert_eq!(told[4]["late"], 500);
+}
+
+/// The program takes skeletons from standard input.
+#[test]
+fn program_reads_standard_input() {
+    let mut body = Body::any(CameraErrors::NONE, 7).expect("a body");
+    let mut input = String::new();
+    for i in 0..12 {
+        let mut frame = parse(&format!(r#"{{"t":{},"people":[]}}"#, 33 * i)).expect("a frame");
+        let place = Place::at(2.0, 0.0, 0.0);
+        frame.people[0] = Some(body.skeleton(3, Pose::of(Gesture::MasterSelect), place));
+        input += &(to_line(&frame).expect("finite") + "\n");
+    }
+    for model in ["net", "svm"] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_sidestep"))
+            .args(["gestures", "-", "--frames", "5", "--model", model])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program");
+        let mut stdin = child.stdin.take().expect("its input");
+        stdin.write_all(input.as_bytes()).expect("it reads");
+        drop(stdin);
+        let output = child.wait_with_output().expect("it ends");
+        let told = String::from_utf8(output.stdout).expect("text");
+        assert!(output.status.success(), "{told}");
+        assert!(told.contains(r#""gesture":"master-select""#), "{told}");
+    }
 }
 
 /// Looks after the announcer until it is quiet; says whether the base is to beep.
@@ -264,6 +312,24 @@ fn announcements_are_events_and_beep_where_nobody_speaks() {
     let mut announcer = Announcer::new(Some("true"));
     let at_once = announcer.say(Announcement::NoFreePath, 1, &mut Vec::new());
     assert!(at_once.is_none() && !listened(&mut announcer));
+}
+
+/// What the base is to beep is a frame that it takes: pairs, twenty at most.
+#[test]
+fn beeps_are_frames() {
+    for announcement in [
+        Announcement::RobotInPath,
+        Announcement::Interact,
+        Announcement::NoFreePath,
+    ] {
+        let tones = beeps(announcement);
+        assert!(tones.len().is_multiple_of(2) && tones.len() <= 40);
+        let mut buffer = [0; MAX_FRAME];
+        let frame = HostCommand::say(tones)
+            .encode(&mut buffer)
+            .expect("a frame");
+        assert_eq!(HostCommand::decode(frame), HostCommand::say(tones));
+    }
 }
 
 /// The words reach the command as one argument, whatever is in them; what comes meanwhile waits,

@@ -83,13 +83,11 @@ fn weighted(weights: &[f64], inputs: &[f64]) -> f64 {
 #[must_use]
 pub fn duels(planes: &[[f64; 7]; 21], six: &[f64; 6]) -> [[f64; 7]; 7] {
     let mut scores = [[0.0; 7]; 7];
-    let mut plane = planes.iter();
-    for i in 0..7 {
-        for j in i + 1..7 {
-            let score = plane.next().map_or(0.0, |plane| weighted(plane, six));
-            scores[i][j] = score;
-            scores[j][i] = -score;
-        }
+    let pairs = (0..7).flat_map(|i| (i + 1..7).map(move |j| (i, j)));
+    for ((i, j), plane) in pairs.zip(planes) {
+        let score = weighted(plane, six);
+        scores[i][j] = score;
+        scores[j][i] = -score;
     }
     scores
 }
@@ -102,6 +100,21 @@ pub fn outputs(hidden: &[[f64; 7]; 6], output: &[[f64; 7]; 3], six: &[f64; 6]) -
         sum / (1.0 + sum.abs())
     });
     output.map(|weights| weighted(&weights, &hidden))
+}
+
+/// How unlike a class features are: of the squared distances from the class's means, in its standard
+/// deviations, the mean, or a quarter of the greatest.
+#[must_use]
+pub fn unlikeness(usual: &[(f64, f64)], values: &[f64]) -> f64 {
+    let squares: Vec<f64> = usual
+        .iter()
+        .zip(values)
+        .map(|((mean, spread), value)| ((value - mean) / spread).powi(2))
+        .collect();
+    let mean = squares.iter().sum::<f64>() / squares.len() as f64;
+    squares
+        .iter()
+        .fold(mean, |most, square| most.max(square / 4.0))
 }
 
 /// S3.T1: (average error of the folds, success rate in %).
@@ -136,17 +149,17 @@ pub fn whole_or_rejected(whole: bool, recognised: bool) -> bool {
     whole || !recognised
 }
 
-/// gesture.INV-4: a score is finite.
+/// gesture.INV-4: a score, or an unlikeness, is finite.
 #[must_use]
 pub fn is_score(score: f32) -> bool {
     score.is_finite()
 }
 
-/// gesture.INV-5: what is recognised is the nearest class, by the least margin or more, and lies
-/// in that class's box.
+/// gesture.INV-5: what is recognised is the nearest class, by the least margin or more, and no more
+/// unlike it than the greatest unlikeness.
 #[must_use]
-pub fn is_clear(is_nearest: bool, margin: f32, least: f32, in_box: bool) -> bool {
-    is_nearest && margin >= least && in_box
+pub fn is_clear(is_nearest: bool, margin: f32, least: f32, unlikeness: f32, greatest: f32) -> bool {
+    is_nearest && margin >= least && unlikeness <= greatest
 }
 
 /// gesture.INV-6: with a positive margin, the class beats every other in their duel.
