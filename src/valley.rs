@@ -442,14 +442,14 @@ impl Geometry {
     #[must_use]
     pub fn share(&self, width: f32) -> f32 {
         let (width, whole) = (width.to_degrees(), 2.0 * self.view_half_angle.to_degrees());
-        if !(width > 1.0) {
-            return 0.0;
-        }
         if width >= whole {
-            return 1.0;
+            1.0
+        } else if width > 1.0 {
+            // The angle of view is at least 11°: nothing is divided by a small number.
+            (math::ln(width) / math::ln(whole).max(1.0)).clamp(0.0, 1.0)
+        } else {
+            0.0
         }
-        // The angle of view is at least 11°: nothing is divided by a small number.
-        (math::ln(width) / math::ln(whole).max(1.0)).clamp(0.0, 1.0)
     }
 }
 

@@ -21,6 +21,7 @@ pub mod faults;
 pub mod gestures;
 pub mod laser;
 pub mod log;
+pub mod meet;
 pub mod pilot;
 pub mod replay;
 pub mod session;

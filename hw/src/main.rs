@@ -1,7 +1,10 @@
 //! The program `sidestep`.
 
 use clap::{Parser, Subcommand};
-use sidestep::gesture;
+use sidestep::gesture::{self, Model};
+use sidestep::law::Law;
+use sidestep_hw::announce::Announcer;
+use sidestep_hw::base;
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::coverage;
 use sidestep_hw::decide;
@@ -11,7 +14,8 @@ use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
 use sidestep_hw::gestures;
-use sidestep_hw::pilot::{Pilot, settings};
+use sidestep_hw::meet::{self, Meeting, Watch};
+use sidestep_hw::pilot::{Pilot, settings, usual_law};
 use sidestep_hw::replay::{self, Columns};
 use sidestep_hw::skeletons::Lines;
 use sidestep_hw::{log, transport};
@@ -106,6 +110,17 @@ enum Command {
         /// Where to write the log.
         #[arg(long, default_value = "sidestep-log.jsonl", value_name = "FILE")]
         log: PathBuf,
+        /// Meet people by S3's law: where skeletons come from. - is standard input, tcp:HOST:PORT a
+        /// server, else a file or a named pipe; one line of JSON a picture, see `sidestep gestures`.
+        /// The log does not replay: it does not hold the pictures.
+        #[arg(long, value_name = "SOURCE", requires = "meeting")]
+        people: Option<String>,
+        /// S3's parameters; see `sidestep config --meeting`.
+        #[arg(long, value_name = "FILE")]
+        meeting: Option<PathBuf>,
+        /// What speaks: a command that gets the words as its last argument, such as "espeak-ng -s 130".
+        #[arg(long, value_name = "COMMAND")]
+        speech: Option<String>,
     },
     /// Be the robot: a simulated base for other hosts, on a pseudo-terminal or a TCP port.
     Emulate {
@@ -178,7 +193,11 @@ enum Command {
         stop_frames: u32,
     },
     /// Print the default configuration, commented.
-    Config,
+    Config {
+        /// The parameters of S3's law instead.
+        #[arg(long)]
+        meeting: bool,
+    },
 }
 
 /// S3's two models.
@@ -233,7 +252,12 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     // Standard input may be what skeletons come from.
-    if !matches!(arguments.command, Command::Gestures { .. }) {
+    let taken = match &arguments.command {
+        Command::Gestures { .. } => true,
+        Command::Run { people, .. } => people.as_deref() == Some("-"),
+        _ => false,
+    };
+    if !taken {
         // Ends with the program.
         std::thread::spawn(|| SIGNALS.listen());
     }
@@ -299,11 +323,32 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             goal,
             baud,
             log,
+            people,
+            meeting,
+            speech,
         } => {
             let config = read_config(Some(&config))?;
+            let run = Errand {
+                port,
+                config,
+                goal,
+                baud,
+                log,
+            };
+            let Some(source) = people else {
+                return match config.sonars {
+                    Sonars::Front8 => run_base::<8>(&run),
+                    Sonars::All16 => run_base::<16>(&run),
+                };
+            };
+            let file = meeting.ok_or("--people needs --meeting")?;
+            let text = std::fs::read_to_string(&file)
+                .map_err(|error| format!("{}: {error}", file.display()))?;
+            let meeting = Meeting::parse(&text, &file.display().to_string())?;
+            let speech = speech.as_deref();
             match config.sonars {
-                Sonars::Front8 => run_base::<8>(&port, config, goal, baud, &log),
-                Sonars::All16 => run_base::<16>(&port, config, goal, baud, &log),
+                Sonars::Front8 => meet_people::<8>(&run, &meeting, &source, speech),
+                Sonars::All16 => meet_people::<16>(&run, &meeting, &source, speech),
             }
         }
         Command::Emulate {
@@ -343,8 +388,12 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             gestures::watch(lines, model.into(), settings, || clock.now(), &mut out)?;
             Ok(ExitCode::SUCCESS)
         }
-        Command::Config => {
-            print!("{}", config::default_toml());
+        Command::Config { meeting } => {
+            if meeting {
+                print!("{}", meet::default_toml());
+            } else {
+                print!("{}", config::default_toml());
+            }
             Ok(ExitCode::SUCCESS)
         }
     }
@@ -418,58 +467,93 @@ fn run_faults(seeds: u64, out: Option<&Path>) -> Result<ExitCode, Box<dyn Error>
     }
 }
 
-fn run_base<const N: usize>(
-    port: &str,
+/// A drive of a real base.
+struct Errand {
+    port: String,
     config: RobotConfig,
     goal: [f32; 2],
     baud: Option<u32>,
-    log: &Path,
-) -> Result<ExitCode, Box<dyn Error>> {
-    // A log of an earlier run is somebody's record: never written over.
-    let file = File::create_new(log).map_err(|error| format!("log {}: {error}", log.display()))?;
-    let serial = !port.starts_with("tcp:");
-    let mut pilot = Pilot::<_, N>::new(
-        config,
-        goal,
-        settings(&config, serial, baud),
-        Box::new(BufWriter::new(file)),
-    )?;
-    let mut status = Status::default();
-    let ending = drive::run(
-        &mut pilot,
-        || transport::open(port),
-        Clock::new(1.0),
-        None,
-        &SIGNALS,
-        &mut status,
-    )
-    .inspect_err(|_| {
-        // Nothing was driven: an empty log would only stand in the way of the next try.
-        let _ = std::fs::remove_file(log);
-    })?;
-    if let Some(error) = pilot.log_error() {
-        return Err(format!("log {}: not complete: {error}", log.display()).into());
-    }
-    let tally = pilot.tally();
-    let stops: Vec<String> = tally
-        .stops
-        .iter()
-        .map(|(kind, count)| format!("{kind} {count}"))
-        .collect();
-    status.keep(&format!(
-        "ended: {ending:?}; {} ticks; stops: {}; log: {}",
-        tally.ticks,
-        if stops.is_empty() {
-            "none".to_owned()
+    log: PathBuf,
+}
+
+impl Errand {
+    /// Drives a pilot with this law; `attend` is called again and again.
+    fn drive<L: Law<N>, const N: usize>(
+        &self,
+        law: L,
+        attend: impl FnMut(&mut Pilot<L, N>, u64),
+    ) -> Result<ExitCode, Box<dyn Error>> {
+        let log = &self.log;
+        // A log of an earlier run is somebody's record: never written over.
+        let file =
+            File::create_new(log).map_err(|error| format!("log {}: {error}", log.display()))?;
+        let serial = !self.port.starts_with("tcp:");
+        let mut pilot = Pilot::<L, N>::with_law(
+            law,
+            self.config,
+            self.goal,
+            settings(&self.config, serial, self.baud),
+            Box::new(BufWriter::new(file)),
+        )?;
+        let mut status = Status::default();
+        let ending = drive::run_attended(
+            &mut pilot,
+            || transport::open(&self.port),
+            Clock::new(1.0),
+            None,
+            &SIGNALS,
+            &mut status,
+            attend,
+        )
+        .inspect_err(|_| {
+            // Nothing was driven: an empty log would only stand in the way of the next try.
+            let _ = std::fs::remove_file(log);
+        })?;
+        if let Some(error) = pilot.log_error() {
+            return Err(format!("log {}: not complete: {error}", log.display()).into());
+        }
+        let tally = pilot.tally();
+        let stops: Vec<String> = tally
+            .stops
+            .iter()
+            .map(|(kind, count)| format!("{kind} {count}"))
+            .collect();
+        status.keep(&format!(
+            "ended: {ending:?}; {} ticks; stops: {}; log: {}",
+            tally.ticks,
+            if stops.is_empty() {
+                "none".to_owned()
+            } else {
+                stops.join(", ")
+            },
+            log.display()
+        ));
+        Ok(if ending == Ending::Arrived {
+            ExitCode::SUCCESS
         } else {
-            stops.join(", ")
-        },
-        log.display()
-    ));
-    Ok(if ending == Ending::Arrived {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
+            ExitCode::from(2)
+        })
+    }
+}
+
+fn run_base<const N: usize>(errand: &Errand) -> Result<ExitCode, Box<dyn Error>> {
+    let law = usual_law(errand.config.core, base::ring::<N>(&errand.config)?);
+    errand.drive(law, |_, _| {})
+}
+
+/// Among people, by S3's law.
+fn meet_people<const N: usize>(
+    errand: &Errand,
+    meeting: &Meeting,
+    source: &str,
+    speech: Option<&str>,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let law = meeting.law::<N>(&errand.config)?;
+    let mut watch = Watch::new(Lines::open(source)?, Model::default())?;
+    let mut announcer = Announcer::new(speech);
+    let mut out = std::io::stdout();
+    errand.drive(law, |pilot: &mut Pilot<_, N>, now| {
+        meet::attend(pilot, &mut watch, &mut announcer, &mut out, now);
     })
 }
 

@@ -409,7 +409,8 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
         }
     }
 
-    fn note(&mut self, t: u64, text: String) {
+    /// Shows and records something to know.
+    pub fn note(&mut self, t: u64, text: String) {
         if self.header_written {
             self.write(&Record::Event {
                 t,
