@@ -6,6 +6,7 @@ use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw};
 use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
+use crate::encounter;
 use crate::log::Halt;
 use crate::pilot::{Pilot, Tally, USUAL_LAW, settings, usual_law};
 use crate::transport;
@@ -22,6 +23,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the set of S1's Figure 12 is called.
 pub const FIG12: &str = "fig12";
+
+/// What the stories of S3's Figures 8 and 9 are called.
+pub const VALLEY: &str = "valley";
 
 /// What is demonstrated, and how.
 #[derive(Clone, Debug)]
@@ -62,7 +66,9 @@ impl Summary {
         driving.people + driving.obstacles + turning.people + turning.obstacles
     }
 
-    fn text(&self, scenario: &Scenario) -> String {
+    /// What came of it, in lines.
+    #[must_use]
+    pub fn text(&self, scenario: &Scenario) -> String {
         let mut text = String::new();
         let least = self.outcome.minimum_clearance_while_driving;
         let clearance = |metres: f64| {
@@ -148,8 +154,50 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
     ]
 }
 
+/// Tells S3's stories in virtual time: the robot meets people, speaks, waits, is told by a master or
+/// chooses for itself, and passes. Leaves a folder with a picture and what happened for each, and
+/// gives the number of contacts while the robot moved.
+///
+/// # Errors
+/// If a story does not make a simulation, or the folder cannot be used.
+pub fn valley(options: &Options, status: &mut Status) -> Result<u32, Box<dyn Error>> {
+    let mut contacts = 0;
+    for name in encounter::STORIES {
+        let mut story = encounter::story(name, options.knobs.seed)?;
+        story.scenario.sonar_faults = options.knobs.sonar_faults;
+        let folder = run_folder(&options.out, &format!("valley-{name}"))?;
+        status.keep(&format!("== {name}: {}", story.scenario.description));
+        let met = encounter::run(&story, &options.config, sidestep::interact::USUAL, None)?;
+        let mut text = String::new();
+        for happening in &met.happenings {
+            let seconds = happening.t as f64 / 1000.0;
+            let _ = writeln!(text, "{seconds:7.1} s  {}", happening.text());
+        }
+        let outcome = &met.report.outcome;
+        let least = outcome.minimum_clearance_while_driving.people;
+        let touched = met.report.contacts.len() as u32;
+        let _ = writeln!(
+            text,
+            "goal reached: {}; contacts while moving: {touched}; least clearance of people while \
+             driving: {least:.2} m; stops of the shield: {}",
+            if met.report.arrived { "yes" } else { "no" },
+            met.stops.len()
+        );
+        status.keep(text.trim_end());
+        fs::write(folder.join("summary.txt"), &text)?;
+        let picture = folder.join("picture.svg");
+        fs::write(&picture, met.picture())?;
+        status.keep(&format!("picture: {}\n", picture.display()));
+        contacts += touched;
+    }
+    Ok(contacts)
+}
+
 /// A folder that did not exist, named after a scenario and numbered.
-fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+///
+/// # Errors
+/// If no folder can be made.
+pub fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {
@@ -305,8 +353,22 @@ pub fn run_in_memory<L: Law<16>>(
     config: &RobotConfig,
     law: L,
 ) -> Result<(Summary, Simulation), Box<dyn Error>> {
+    run_watched(scenario, config, law, |_, _, _| false)
+}
+
+/// The same with a robot of `N` sonars and somebody who looks on, after every step: with the pilot,
+/// the simulation, and the time in ms. The run ends when they say so.
+///
+/// # Errors
+/// If the scenario does not make a simulation, or its goal is out of range.
+pub fn run_watched<L: sidestep::law::Law<N>, const N: usize>(
+    scenario: &Scenario,
+    config: &RobotConfig,
+    law: L,
+    mut watch: impl FnMut(&mut Pilot<L, N>, &Simulation, u64) -> bool,
+) -> Result<(Summary, Simulation), Box<dyn Error>> {
     let mut simulation = scenario.simulate()?;
-    let mut pilot = Pilot::<L, 16>::with_law(
+    let mut pilot = Pilot::<L, N>::with_law(
         law,
         *config,
         goal_from_start(scenario),
@@ -328,6 +390,9 @@ pub fn run_in_memory<L: Law<16>>(
             }
         }
         while pilot.next_event().is_some() {}
+        if watch(&mut pilot, &simulation, now) {
+            break;
+        }
         if pilot.tally().arrived.is_some() {
             ending = Ending::Arrived;
             break;
