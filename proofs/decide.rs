@@ -85,20 +85,6 @@ pub fn only_stochastic_rows_pass() {
     kani::cover!(!accepted && rows[0][0] == 1.0, "refused");
 }
 
-/// S2 Table 2: whatever is believed, stopping costs 5 s more, and is never chosen.
-//= decide.INV-9
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(4))]
-pub fn table_2_never_stops() {
-    let belief = any_belief();
-    let [maneuver, stop] = LossTable::TABLE_2.expected(&belief);
-    let chosen = LossTable::TABLE_2.choose(&belief);
-    assert!(law::table_2_never_stops(maneuver, stop, chosen, ONE));
-    kani::cover!(belief.parts()[0] == ONE, "an obstacle for certain");
-    kani::cover!(belief.parts()[1] == ONE, "none for certain");
-}
-
 /// Expected losses lie between the losses of the action, for any belief and each table that is there to
 /// be used: the paper's two, and the usual losses far and near. Tables of any losses multiply two
 /// symbolic numbers, which does not close; they are `14e` of `spec/smt/`.

@@ -344,6 +344,19 @@ proptest! {
     }
 }
 
+/// Every belief in two states that there is: the theorem about the published rule, on the code.
+//= decide.INV-9 (every input)
+#[test]
+fn table_2_never_stops_whatever_is_believed() {
+    for first in 0..=ONE {
+        let belief = Belief::from_parts([first, ONE - first]).expect("parts of one");
+        let [maneuver, stop] = LossTable::TABLE_2.expected(&belief);
+        let chosen = LossTable::TABLE_2.choose(&belief);
+        assert!(law::table_2_never_stops(maneuver, stop, chosen, ONE));
+    }
+    assert_eq!(Belief::from_parts([1, ONE]), None);
+}
+
 /// Every distance in millimetres up to 2 m, 257 probabilities.
 //= decide.INV-12
 #[test]
