@@ -52,23 +52,6 @@ pub fn updates_stay_on_the_simplex() {
     kani::cover!(likelihood[1].is_nan(), "NaN");
 }
 
-/// One step on, and with a floor, a belief stays on the simplex: whole-number arithmetic, for any
-/// belief, any distributions as rows and any floor.
-//= decide.INV-1
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(4))]
-pub fn predictions_stay_on_the_simplex() {
-    let belief = any_belief();
-    let transition = TransitionMatrix::from_rows([any_belief(), any_belief()]);
-    let later = belief.predicted(&transition);
-    assert!(law::on_simplex(later.parts(), ONE));
-    kani::cover!(belief.parts()[0] == ONE, "certain");
-    if let Ok(floored) = belief.floored(kani::any()) {
-        assert!(law::on_simplex(floored.parts(), ONE));
-    }
-}
-
 /// What is no transition matrix is refused, for any bit patterns of two rows.
 //= decide.INV-6
 #[cfg_attr(kani, kani::proof)]
@@ -81,8 +64,9 @@ pub fn only_stochastic_rows_pass() {
     for row in rows {
         assert!(law::only_stochastic_is_accepted(&row, accepted));
     }
-    kani::cover!(accepted && rows[0][0] < rows[1][0], "accepted");
-    kani::cover!(!accepted && rows[0][0] == 1.0, "refused");
+    // Without short circuits, which would make two of each.
+    kani::cover!(accepted & (rows[0][0] < rows[1][0]), "accepted");
+    kani::cover!(!accepted & (rows[0][0] == 1.0), "refused");
 }
 
 /// Expected losses lie between the losses of the action, for any belief and each table that is there to

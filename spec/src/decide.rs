@@ -204,8 +204,11 @@ pub fn monotone_in_the_ratio(less: u32, more: u32, rounding: u32) -> bool {
 pub fn only_stochastic_is_accepted(row: &[f32], accepted: bool) -> bool {
     let (mut probabilities, mut sum) = (true, 0.0);
     for entry in row {
-        probabilities &= (0.0..=1.0).contains(entry);
-        sum += f64::from(*entry);
+        if (0.0..=1.0).contains(entry) {
+            sum += f64::from(*entry);
+        } else {
+            probabilities = false;
+        }
     }
     // The sum in f32 is off by its own rounding.
     !accepted || (probabilities && (sum - 1.0).abs() <= 1.1e-5)
