@@ -139,7 +139,8 @@ pub fn closeness(distance: f32, config: &EdgeConfig) -> Option<f32> {
 #[must_use]
 pub fn projection(nearness: f32, closeness: f32, cosine: f32) -> f32 {
     let along = if cosine > 0.0 { cosine.min(1.0) } else { 0.0 };
-    nearness * closeness * along
+    // Rounding keeps this bound by itself; like this a solver sees it.
+    (nearness * closeness * along).min(10.0 * closeness)
 }
 
 /// The actual edge (AE): from the robot's centre to the end of the planned edge.
@@ -231,7 +232,6 @@ pub enum Blindness {
 /// An obstacle is one although another sonar may be stale; a ring is only [`Detection::Clear`] if
 /// every sonar is heard and the robot is within d_max of the edge.
 //= edge.INV-6
-//= edge.INV-7
 #[must_use]
 pub fn detect<const N: usize>(
     sonar: &[SonarReading; N],
@@ -242,8 +242,7 @@ pub fn detect<const N: usize>(
     let Some(closeness) = closeness(distance, config) else {
         return Detection::Blind(Blindness::OffEdge);
     };
-    let mut greatest = 0.0;
-    let mut at = 0;
+    let mut projections = [0.0; N];
     let mut silent = None;
     for i in 0..N {
         let range = match sonar[i] {
@@ -256,12 +255,28 @@ pub fn detect<const N: usize>(
                 continue;
             }
         };
-        let projection = projection(nearness(range, config), closeness, cosines[i]);
-        if projection > greatest {
-            (greatest, at) = (projection, i);
+        projections[i] = projection(nearness(range, config), closeness, cosines[i]);
+    }
+    judge(&projections, silent, config.threshold)
+}
+
+/// S4 step 5: the greatest of the projections decides, if it exceeds the threshold; otherwise a sonar
+/// that is not heard makes the detector blind.
+//= edge.INV-7
+#[must_use]
+pub fn judge<const N: usize>(
+    projections: &[f32; N],
+    silent: Option<usize>,
+    threshold: f32,
+) -> Detection {
+    let mut greatest = 0.0;
+    let mut at = 0;
+    for (i, projection) in projections.iter().enumerate() {
+        if *projection > greatest {
+            (greatest, at) = (*projection, i);
         }
     }
-    if greatest > config.threshold {
+    if greatest > threshold {
         return Detection::Obstacle {
             sonar: at,
             greatest,
