@@ -328,7 +328,7 @@ pub fn nothing_is_forgotten() {
 /// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits.
 //= view.INV-4
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
 #[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]

@@ -112,8 +112,8 @@ impl EdgeConfig {
 pub fn nearness(range: Length, config: &EdgeConfig) -> f32 {
     let left = config.range_max - range.get();
     if left > 0.0 {
-        // In this order nothing is rounded up past 10, nor past the threshold at 0.7·R (W2).
-        10.0 * left / config.range_max
+        // In this order W2 holds at 0.7·R to the last bits; a range of 0 may round past 10.
+        (10.0 * left / config.range_max).min(10.0)
     } else {
         0.0
     }
@@ -153,6 +153,9 @@ pub struct ActualEdge {
     pub distance: f32,
 }
 
+/// A sonar whose axis has a greater part backward than this looks back; what is less floats round.
+const LOOKS_BACK: f32 = 0.01;
+
 /// Shortest actual edge that has a direction, m.
 const SHORTEST_ACTUAL: f32 = 0.001;
 
@@ -169,12 +172,16 @@ impl ActualEdge {
         })
     }
 
-    /// cos α of every sonar of a ring: dot products of unit vectors.
+    /// cos α of every sonar of a ring: dot products of unit vectors. Sonars behind the centre of
+    /// rotation, or that look back, take no part: 0. S4 has the front array, and W1 is about its
+    /// reach.
     #[must_use]
     pub fn cosines<const N: usize>(&self, ring: &Ring<N>) -> [f32; N] {
         let mut cosines = [0.0; N];
         for (cosine, sonar) in cosines.iter_mut().zip(ring.sonars()) {
-            *cosine = sonar.axis.dot(&self.direction);
+            if sonar.position.x >= 0.0 && sonar.axis.x >= -LOOKS_BACK {
+                *cosine = sonar.axis.dot(&self.direction);
+            }
         }
         cosines
     }
@@ -984,6 +991,8 @@ pub struct Edge<R, const N: usize> {
     standing_since: Option<Instant>,
     /// It was told to move.
     told_to_move: bool,
+    /// Since when it has stood all the same.
+    kept_since: Option<Instant>,
     /// How often it has looked at the scan without getting on.
     looks: u32,
     /// How far along the edge it has come, m.
@@ -1017,6 +1026,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
             way_back: None,
             standing_since: None,
             told_to_move: false,
+            kept_since: None,
             looks: 0,
             furthest: f32::NEG_INFINITY,
             events: [None; EVENTS],
@@ -1433,7 +1443,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
             State::FollowEdge | State::Rejoin | State::OffEdge
         );
         let edges = self.route.as_ref().len();
-        while moves_on
+        if moves_on
             && self.at + 1 < edges
             && self
                 .edge_now()
@@ -1480,12 +1490,12 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
 
         // Held up: told to go, and standing all the same, for no reason but distance.
         let waits = view.guard.is_some_and(|reason| !reason.may_turn());
-        let held = self.told_to_move
-            && !waits
-            && self.standing_since.is_some_and(|since| {
-                let stood = view.now.since(since).unwrap_or(0);
-                stood >= milliseconds(self.edge.held_time)
-            });
+        let kept = self.told_to_move && standing && !waits;
+        self.kept_since = kept.then(|| self.kept_since.unwrap_or(view.now));
+        let held = self.kept_since.is_some_and(|since| {
+            let stood = view.now.since(since).unwrap_or(0);
+            stood >= milliseconds(self.edge.held_time)
+        });
         let hindrance = if held {
             self.hindrance(view, &cosines)
         } else {

@@ -21,9 +21,12 @@ pub mod arcos;
 pub mod avoid;
 pub mod config;
 pub mod controller;
+pub mod decide;
 pub mod edge;
 pub mod escape;
 pub mod failsafe;
+pub mod gesture;
+pub mod interact;
 pub mod kinematics;
 pub mod laser;
 pub mod law;
@@ -36,9 +39,15 @@ pub mod ring;
 pub mod shield;
 pub mod stream;
 pub mod track;
+pub mod valley;
 pub mod view;
 pub mod wall;
 
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]
 mod proofs;
+
+/// The program text of the guides compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/your-own-law.md")]
+struct YourOwnLaw;

@@ -8,6 +8,7 @@ use sidestep::edge::{
     self, ActualEdge, Blindness, Detection, Edge, EdgeConfig, Event, Finding, FreeWay, Gap, PAPER,
     Parameters, PlannedEdge, Scan, Situation, State,
 };
+use sidestep::failsafe::StopReason;
 use sidestep::law::Law;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
@@ -345,7 +346,8 @@ proptest! {
         prop_assert!((seen.along[0] - (front / 1000.0) as f32).abs() < 0.005, "{seen:?}");
         prop_assert!((seen.across[0] - (right / 1000.0) as f32).abs() < 0.01, "{seen:?}");
         prop_assert!((seen.across[1] - (left / 1000.0) as f32).abs() < 0.01, "{seen:?}");
-        prop_assert_eq!(found.passable, gap >= 0.6 - 1e-6);
+        prop_assert_eq!(found.passable, found.gap.expect("a gap").is_passable(0.6));
+        prop_assert!(law::gap_is_free(0.0, gap, found.passable, 0.6, &[]));
     }
 }
 
@@ -516,6 +518,27 @@ fn no_side_wall_is_an_obstacle() {
         ..law::PAPER_CORRIDOR
     };
     assert!(!law::wall_is_harmless(narrow.wall_bound(400)));
+}
+
+/// Of sixteen sonars the eight in front take part, whichever way the robot looks.
+#[test]
+fn rear_sonars_take_no_part() {
+    let mut placements = [Placement {
+        x: 0.0,
+        y: 0.0,
+        heading: 0.0,
+    }; 16];
+    for (placement, at) in placements.iter_mut().zip(BaseParameters::P3DX.sonars) {
+        *placement = Placement::from_mm_deg(at.x_mm, at.y_mm, at.heading_deg);
+    }
+    let all = Ring::new(&placements, &base()).expect("the ring is good");
+    for degrees in (-180..180).step_by(10) {
+        let here = pose(0.0, 0.1, degrees as f32);
+        let actual = ActualEdge::new(&here, &edge([0.0, 0.0], [3.0, 0.0])).expect("an edge");
+        let cosines = actual.cosines(&all);
+        assert_eq!(cosines[..8], actual.cosines(&ring())[..]);
+        assert_eq!(cosines[8..], [0.0; 8]);
+    }
 }
 
 /// The bound is one: what the P3-DX's ring hears of walls, by ray casting and the core, stays under
@@ -900,6 +923,41 @@ fn what_has_left_is_forgotten() {
         driver.advise(&view);
     }
     assert_eq!(driver.state(), State::FollowEdge);
+}
+
+/// Whoever is told to go and stands is held up, but not by what has nothing to do with distance.
+#[test]
+fn who_is_held_up_measures() {
+    for (guard, state) in [
+        (None, State::Stopped),
+        (Some(StopReason::MotorsDisabled), State::FollowEdge),
+    ] {
+        let route = vec![edge([0.0, 0.0], [3.0, 0.0])];
+        let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
+        let mut view = quiet_view();
+        view.pose = pose(0.0, 0.0, 0.0);
+        view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        view.sonar[1] = echo(0.5);
+        view.guard = guard;
+        for now in (0..3000).step_by(100) {
+            view.now = Instant(now);
+            driver.advise(&view);
+            assert_eq!(driver.state(), State::FollowEdge);
+        }
+        view.now = Instant(3100);
+        driver.advise(&view);
+        assert_eq!(driver.state(), state);
+        // What kept it is over: the time before does not count.
+        view.guard = None;
+        view.now = Instant(3200);
+        driver.advise(&view);
+        let expected = if state == State::Stopped {
+            State::Measure
+        } else {
+            State::FollowEdge
+        };
+        assert_eq!(driver.state(), expected);
+    }
 }
 
 /// Routes with holes are refused, with the number.

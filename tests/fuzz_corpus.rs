@@ -19,9 +19,13 @@ const TARGETS: &[(&str, Target)] = &[
     ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
+    ("decide", targets::decide::run),
     ("edge", targets::edge::run),
     ("laser", targets::laser::run),
+    ("gesture", targets::gesture::run),
+    ("interact", targets::interact::run),
     ("shield", targets::shield::run),
+    ("valley", targets::valley::run),
 ];
 
 /// Numbers that are the same in every run (SplitMix64).

@@ -1,14 +1,17 @@
 //! The demonstration: a simulated robot on a real pseudo-terminal, driven through the serial
 //! stack, watched, and drawn.
 
+use crate::base;
 use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw};
 use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
+use crate::encounter;
 use crate::log::Halt;
-use crate::pilot::{Pilot, Tally, UsualLaw, settings};
+use crate::pilot::{Pilot, Tally, USUAL_LAW, settings, usual_law};
 use crate::transport;
 use sidestep::arcos::BaseParameters;
+use sidestep::law::Law;
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
 use sidestep_sim::simulation::{Outcome, Simulation};
 use std::error::Error;
@@ -20,6 +23,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the set of S1's Figure 12 is called.
 pub const FIG12: &str = "fig12";
+
+/// What the stories of S3's Figures 8 and 9 are called.
+pub const VALLEY: &str = "valley";
 
 /// What is demonstrated, and how.
 #[derive(Clone, Debug)]
@@ -148,6 +154,45 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
     ]
 }
 
+/// Tells S3's stories in virtual time: the robot meets people, speaks, waits, is told by a master or
+/// chooses for itself, and passes. Leaves a folder with a picture and what happened for each, and
+/// gives the number of contacts while the robot moved.
+///
+/// # Errors
+/// If a story does not make a simulation, or the folder cannot be used.
+pub fn valley(options: &Options, status: &mut Status) -> Result<u32, Box<dyn Error>> {
+    let mut contacts = 0;
+    for name in encounter::STORIES {
+        let mut story = encounter::story(name, options.knobs.seed)?;
+        story.scenario.sonar_faults = options.knobs.sonar_faults;
+        let folder = run_folder(&options.out, &format!("valley-{name}"))?;
+        status.keep(&format!("== {name}: {}", story.scenario.description));
+        let met = encounter::run(&story, &options.config, sidestep::interact::USUAL, None)?;
+        let mut text = String::new();
+        for happening in &met.happenings {
+            let seconds = happening.t as f64 / 1000.0;
+            let _ = writeln!(text, "{seconds:7.1} s  {}", happening.text());
+        }
+        let outcome = &met.report.outcome;
+        let least = outcome.minimum_clearance_while_driving.people;
+        let touched = met.report.contacts.len() as u32;
+        let _ = writeln!(
+            text,
+            "goal reached: {}; contacts while moving: {touched}; least clearance of people while \
+             driving: {least:.2} m; stops of the shield: {}",
+            if met.report.arrived { "yes" } else { "no" },
+            met.stops.len()
+        );
+        status.keep(text.trim_end());
+        fs::write(folder.join("summary.txt"), &text)?;
+        let picture = folder.join("picture.svg");
+        fs::write(&picture, met.picture())?;
+        status.keep(&format!("picture: {}\n", picture.display()));
+        contacts += touched;
+    }
+    Ok(contacts)
+}
+
 /// A folder that did not exist, named after a scenario and numbered.
 ///
 /// # Errors
@@ -174,7 +219,19 @@ impl Drop for SetOnDrop<'_> {
     }
 }
 
-/// Runs one scenario in real time over a pseudo-terminal and leaves its run folder.
+/// A scenario that was run with some law.
+pub struct Ran<L> {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What came of it.
+    pub summary: Summary,
+    /// The world at the end.
+    pub simulation: Simulation,
+    /// The pilot at the end.
+    pub pilot: Pilot<L, 16>,
+}
+
+/// Runs one scenario with the usual law in real time over a pseudo-terminal and leaves its run folder.
 ///
 /// # Errors
 /// If the pseudo-terminal, the port or the folder cannot be used.
@@ -184,6 +241,23 @@ pub fn run(
     signals: &Signals,
     status: &mut Status,
 ) -> Result<(PathBuf, Summary), Box<dyn Error>> {
+    let law = usual_law(options.config.core, base::ring(&options.config)?);
+    let ran = run_with(law, USUAL_LAW, scenario, options, signals, status)?;
+    Ok((ran.folder, ran.summary))
+}
+
+/// The same with any law, which the log calls `name`.
+///
+/// # Errors
+/// If the pseudo-terminal, the port or the folder cannot be used.
+pub fn run_with<L: Law<16>>(
+    law: L,
+    name: &'static str,
+    scenario: &Scenario,
+    options: &Options,
+    signals: &Signals,
+    status: &mut Status,
+) -> Result<Ran<L>, Box<dyn Error>> {
     let folder = run_folder(&options.out, scenario.name)?;
     let simulation = scenario.simulate()?;
     let (line, port) = Line::pty()?;
@@ -194,12 +268,14 @@ pub fn run(
         folder.display()
     ));
     let log = BufWriter::new(File::create(folder.join("log.jsonl"))?);
-    let mut pilot = Pilot::<_, 16>::new(
+    let mut pilot = Pilot::<_, 16>::with_law(
+        law,
         options.config,
         goal_from_start(scenario),
         settings(&options.config, true, None),
         Box::new(log),
     )?;
+    pilot.set_law_name(name);
     let clock = Clock::new(options.speed);
     let done = AtomicBool::new(false);
     let (ending, simulation) = std::thread::scope(|scope| {
@@ -228,15 +304,20 @@ pub fn run(
         return Err(format!("the log is not complete: {error}").into());
     }
     status.keep(&summary.text(scenario));
-    Ok((folder, summary))
+    Ok(Ran {
+        folder,
+        summary,
+        simulation,
+        pilot,
+    })
 }
 
 /// Writes summary and picture.
-fn leave(
+fn leave<L: Law<16>>(
     folder: &Path,
     scenario: &Scenario,
     simulation: &Simulation,
-    pilot: &Pilot<UsualLaw<16>, 16>,
+    pilot: &Pilot<L, 16>,
     summary: &Summary,
 ) -> std::io::Result<()> {
     let text = summary.text(scenario);
@@ -267,7 +348,7 @@ fn leave(
 ///
 /// # Errors
 /// If the scenario does not make a simulation, or its goal is out of range.
-pub fn run_in_memory<L: sidestep::law::Law<16>>(
+pub fn run_in_memory<L: Law<16>>(
     scenario: &Scenario,
     config: &RobotConfig,
     law: L,

@@ -5,7 +5,12 @@ use sidestep::config::{Config, Parameters};
 use sidestep::edge::{self, Event};
 use sidestep::preset;
 use sidestep_hw::config::RobotConfig;
-use sidestep_hw::edge::{Corridors, Course, corridor_base, narrowed, random, robot_for};
+use sidestep_hw::demo::Options;
+use sidestep_hw::drive::Status;
+use sidestep_hw::edge::{
+    Corridors, Course, NAME, corridor_base, demo, narrowed, random, robot_for,
+};
+use sidestep_sim::scenario::Knobs;
 use sidestep_sim::{corridor, laser};
 
 /// Corridors of every kind: no wall is an obstacle, every box is, and nothing is touched.
@@ -134,4 +139,31 @@ fn without_a_scanner_it_waits() {
         .rev()
         .map(|sample| sample.speed);
     assert!(speeds.take(100).all(|speed| speed == 0.0));
+}
+
+/// The demonstration leaves what it says it leaves.
+#[test]
+fn demonstration_is_drawn() {
+    let out = std::env::temp_dir().join(format!("sidestep-edge-{}", std::process::id()));
+    let options = Options {
+        scenario: NAME.to_owned(),
+        data: None,
+        start_time: 0.0,
+        knobs: Knobs::default(),
+        speed: 1.0,
+        out: out.clone(),
+        config: RobotConfig::default(),
+    };
+    let folder = demo(&options, &mut Status::default()).expect("a demonstration");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect(name);
+    let summary = read("summary.txt");
+    assert!(summary.contains("edge 4: covered"), "{summary}");
+    assert!(summary.contains("before a wall"), "{summary}");
+    for name in ["picture.svg", "classical.svg"] {
+        assert!(
+            read(name).contains("stroke-dasharray"),
+            "{name} shows no way"
+        );
+    }
+    std::fs::remove_dir_all(&out).expect("removed");
 }
