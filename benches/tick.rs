@@ -185,7 +185,7 @@ fn controller() -> Work {
 }
 
 /// Bytes of the stream that [`decode`] reads in a call: ten SIPs with three readings each.
-const STREAM: usize = 10 * 39;
+const STREAM: usize = 10 * 50;
 
 fn decode() -> Work {
     let mut readings = SonarReadings::new();

@@ -1,7 +1,7 @@
 //! What stands in for `sidestep::math` in proofs: any value that the contract allows.
 //!
 //! `libm` is beyond a bit-precise solver. The contracts are the predicates of
-//! `sidestep_spec::math`, which `examples/math_exhaustive.rs` checks for every input.
+//! `sidestep_spec::math`, which `examples/math_exhaustive` checks for every input.
 
 #[cfg(not(kani))]
 use super::kani;

@@ -530,6 +530,27 @@ pub fn what_moves_was_admitted() {
     kani::cover!(admitted.speed == 0 && advised.speed > 300, "it does not");
 }
 
+/// The test of the curvature is the formula of the invariant, for any advice that is heeded and
+/// anything that is not greater in either part.
+//= shield.INV-13
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(kissat))]
+pub fn curvature_is_kept() {
+    let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    let (speed, turn_rate) = (any_in(-10_000, 10_000), any_in(-20_000, 20_000));
+    kani::assume(speed.abs() <= advised.speed.abs());
+    kani::assume(turn_rate.abs() <= advised.turn_rate.abs());
+    if sidestep::shield::no_tighter(speed, turn_rate, advised) {
+        assert!(promise::no_tighter(
+            speed,
+            turn_rate,
+            advised.speed,
+            advised.turn_rate
+        ));
+    }
+    kani::cover!(turn_rate > 0 && speed < advised.speed, "a slower turn");
+}
+
 /// A stand-in for the test of the curvature.
 pub fn odd_curve(_speed: i32, turn_rate: i32, advised: Twist) -> bool {
     turn_rate % 3 == 0 || turn_rate == advised.turn_rate

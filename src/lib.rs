@@ -21,11 +21,14 @@ pub mod arcos;
 pub mod avoid;
 pub mod config;
 pub mod controller;
+pub mod decide;
+pub mod edge;
 pub mod escape;
 pub mod failsafe;
 pub mod gesture;
 pub mod interact;
 pub mod kinematics;
+pub mod laser;
 pub mod law;
 pub mod math;
 pub mod monitor;
@@ -34,6 +37,7 @@ pub mod preset;
 pub mod quantity;
 pub mod ring;
 pub mod shield;
+pub mod stream;
 pub mod track;
 pub mod valley;
 pub mod view;
@@ -42,3 +46,8 @@ pub mod wall;
 #[cfg(kani)]
 #[path = "../proofs/mod.rs"]
 mod proofs;
+
+/// The program text of the guides compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/your-own-law.md")]
+struct YourOwnLaw;

@@ -177,13 +177,14 @@ impl Angle {
 /// `value`, cut off at ±`limit`. Unlike `clamp` it cannot panic, whatever the limit; what is no number
 /// stays so.
 pub(crate) const fn within(value: f32, limit: f32) -> f32 {
-    if value > limit {
-        limit
-    } else if value < -limit {
-        -limit
-    } else {
-        value
+    let mut cut = value;
+    if cut < -limit {
+        cut = -limit;
     }
+    if cut > limit {
+        cut = limit;
+    }
+    cut
 }
 
 /// Wraps `angle` (finite, in [−3π, 3π]) to (−π, π].

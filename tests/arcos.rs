@@ -397,6 +397,86 @@ proptest! {
     }
 }
 
+/// A tail may end at any field, as that of older firmware does: what is there is read, and comes back.
+//= arcos.INV-10
+#[test]
+fn a_tail_may_end_at_any_byte() {
+    let mut buffer = [0; MAX_FRAME];
+    let information = StandardInformation {
+        kind: StandardInformation::MOTORS_MOVING,
+        ..StandardInformation::default()
+    };
+    let compulsory = information.encode(&mut buffer).expect("it fits");
+    let compulsory = compulsory.arguments().len();
+    let information = StandardInformation {
+        tail: Tail::standard(124, -35),
+        ..information
+    };
+    let whole = information.encode(&mut buffer).expect("it fits");
+    let whole = whole.arguments().to_vec();
+    let mut fields = std::collections::BTreeSet::new();
+    for end in compulsory..=whole.len() {
+        let (mut cut, mut again) = ([0; MAX_FRAME], [0; MAX_FRAME]);
+        let frame = FrameWriter::new(&mut cut, information.kind)
+            .bytes(&whole[..end])
+            .finish()
+            .expect("it fits");
+        let read = StandardInformation::decode(frame).expect("a SIP");
+        let frame = read.encode(&mut again).expect("it fits");
+        assert!((compulsory..=end).contains(&frame.arguments().len()));
+        assert_eq!(StandardInformation::decode(frame), Ok(read));
+        fields.insert(frame.arguments().len());
+    }
+    assert_eq!(fields.len(), 13, "twelve fields, and none");
+}
+
+/// Every command number has a name of its own or none, and the commands have their numbers.
+#[test]
+fn commands_have_names_and_numbers() {
+    let names: Vec<&str> = (0..=u8::MAX).filter_map(command::name).collect();
+    let different: std::collections::BTreeSet<&&str> = names.iter().collect();
+    assert_eq!(names.len(), different.len());
+    assert_eq!(command::name(command::SIM_EXIT), Some("SIM_EXIT"));
+    assert_eq!(HostCommand::zero_odometry().number, command::SETO);
+    assert_eq!(HostCommand::request_configuration().number, command::CONFIG);
+    let codes = [9_600, 19_200, 38_400, 57_600, 115_200]
+        .map(|baud| HostCommand::host_baud(baud).map(|host| host.argument));
+    assert_eq!(
+        codes,
+        [0, 1, 2, 3, 4].map(|code| Some(Argument::Integer(code)))
+    );
+    assert_eq!(HostCommand::host_baud(12_345), None);
+}
+
+/// What is refused is named with its numbers.
+#[test]
+fn errors_name_what_is_wrong() {
+    let carried = FrameError::Checksum {
+        computed: 0x12,
+        carried: 0x34,
+    };
+    for (text, numbers) in [
+        (FrameError::Count(250).to_string(), ["250", "249"]),
+        (carried.to_string(), ["0012", "0034"]),
+        (FrameError::Header.to_string(), ["FA", "FB"]),
+        (FrameError::Truncated.to_string(), ["frame", "truncated"]),
+        (PacketError::Type(0x90).to_string(), ["0x90", "type"]),
+        (PacketError::Truncated.to_string(), ["packet", "ends"]),
+        (PacketError::TooManySonars(33).to_string(), ["33", "sonar"]),
+        (PacketError::SonarIndex(32).to_string(), ["32", "sonar"]),
+        (
+            PacketError::SonarsMissing {
+                claimed: 16,
+                bytes: 9,
+            }
+            .to_string(),
+            ["16", "9"],
+        ),
+    ] {
+        assert!(numbers.iter().all(|number| text.contains(number)), "{text}");
+    }
+}
+
 /// All 256 bytes.
 //= arcos.INV-13 (every input)
 #[test]

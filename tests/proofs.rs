@@ -130,10 +130,18 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         turn_is_at_most_half, maneuver_turns_away, maneuver_speed_is_bounded, modes_settle,
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
+    decide: beliefs_are_on_the_simplex, updates_stay_on_the_simplex,
+        predictions_stay_on_the_simplex, table_2_never_stops, expected_losses_are_between,
+        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move,
+        losses_at_a_distance_are_between;
+    edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
+        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
     gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
         unlikeness_is_finite, winner_beats_all,
         outputs_spell_the_class, gesture_counts_after_enough_frames;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
+    laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
+        values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
     interact: machine_keeps_its_promises, advice_is_within_limits;
     valley: admitted_way_is_clear, accepted_valley_is_admitted, share_is_a_share,
@@ -144,7 +152,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         admitted_motion_stays_safe_pioneer, admitted_motion_stays_safe_still,
         admitted_motion_stays_safe_2012, admitted_motion_stays_safe_2011, fits_by_clearance,
         fits_by_age, fits_by_way, braking_stays_safe_unknown, braking_stays_safe_still,
-        rest_is_always_safe, any_advice_is_limited, what_moves_was_admitted,
+        rest_is_always_safe, any_advice_is_limited, what_moves_was_admitted, curvature_is_kept,
         search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
         turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
         stop_set_is_monotone;

@@ -4,7 +4,7 @@
 //! depend on the module are run on it, quick ones first, until one fails or reaches less than it
 //! should. What survives all of them is listed: a mistake that no proof would notice.
 
-use super::ledger::{self, Reader};
+use super::ledger::{self, Harness, Reader};
 use super::source::root;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -39,7 +39,8 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         .map_or(Ok(mutants.len()), |word| word.parse())?;
     let step = (mutants.len() / wanted.clamp(1, mutants.len().max(1))).max(1);
     let chosen: Vec<&Value> = mutants.iter().step_by(step).take(wanted).collect();
-    let rounds = rounds(module);
+    let harnesses = ledger::harnesses();
+    let rounds = rounds(module, &harnesses);
     let copy = copy()?;
     eprintln!(
         "{} of {} mutants of {file}, {} harnesses",
@@ -56,7 +57,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         let name = mutant["name"].as_str().unwrap_or_default();
         let begun = Instant::now();
         std::fs::write(copy.join(&file), mutated(&original, mutant)?)?;
-        let fate = judge(&copy, &rounds)?;
+        let fate = judge(&copy, &rounds, &harnesses)?;
         let (kind, shown) = match &fate {
             Fate::Noticed(by) => ("noticed", by.clone()),
             Fate::Unviable => ("unviable", "does not compile".to_owned()),
@@ -99,18 +100,18 @@ fn mutants(file: &str) -> Outcome<Vec<Value>> {
 }
 
 /// The harnesses whose code includes the module: those that take a few seconds, then the rest.
-fn rounds(module: &str) -> [Vec<String>; 2] {
-    let (_, verdicts) = ledger::read_ledger();
+fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> [Vec<String>; 2] {
+    let (_, verdicts) = ledger::read_ledger(harnesses);
     let mut rounds = [Vec::new(), Vec::new()];
-    for (name, harness) in ledger::harnesses() {
+    for (name, harness) in harnesses {
         if !harness.modules.contains(module) {
             continue;
         }
         let seconds = verdicts
-            .get(&name)
+            .get(name)
             .and_then(|verdict| verdict.seconds.parse::<f64>().ok());
         let slow = seconds.is_none_or(|seconds| seconds > 10.0);
-        rounds[usize::from(slow)].push(name);
+        rounds[usize::from(slow)].push(name.clone());
     }
     rounds
 }
@@ -166,7 +167,11 @@ fn mutated(text: &str, mutant: &Value) -> Outcome<String> {
 }
 
 /// Runs round after round on the copy until something is not as it should be.
-fn judge(copy: &Path, rounds: &[Vec<String>]) -> Outcome<Fate> {
+fn judge(
+    copy: &Path,
+    rounds: &[Vec<String>],
+    harnesses: &BTreeMap<String, Harness>,
+) -> Outcome<Fate> {
     for round in rounds.iter().filter(|round| !round.is_empty()) {
         let mut command = Command::new("cargo");
         command.args(["kani", "--output-format", "terse", "--exact"]);
@@ -190,7 +195,10 @@ fn judge(copy: &Path, rounds: &[Vec<String>]) -> Outcome<Fate> {
             timed_out |= line.contains("timed out");
             if let Some((name, verdict)) = reader.line(&line) {
                 done += 1;
-                if !verdict.is_good() {
+                let good = harnesses
+                    .get(&name)
+                    .is_some_and(|harness| verdict.is_good(harness));
+                if !good {
                     bad = Some(name);
                     break;
                 }

@@ -14,10 +14,14 @@
 
 pub mod arcos;
 pub mod avoid;
+pub mod coverage;
+pub mod decide;
+pub mod edge;
 pub mod failsafe;
 pub mod gesture;
 pub mod interact;
 pub mod kinematics;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;
