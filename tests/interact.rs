@@ -390,6 +390,7 @@ impl Stage {
                 stuck: false,
             }],
             obstacle: None,
+            ahead: Length::MAX,
             room: [Length::MAX; 2],
             beside: [Length::MAX; 2],
             base: BaseStatus {
