@@ -17,8 +17,11 @@ use crate::kani;
 
 pub mod arcos;
 pub mod avoid;
+pub mod decide;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;

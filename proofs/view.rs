@@ -124,7 +124,7 @@ fn any_point() -> Vector2<f32> {
 }
 
 /// Any judged reading.
-fn any_reading() -> SonarReading {
+pub fn any_reading() -> SonarReading {
     match kani::any::<u8>() % 5 {
         0 => SonarReading::Echo(any_length()),
         1 => SonarReading::NoEcho(any_length()),
@@ -328,7 +328,7 @@ pub fn nothing_is_forgotten() {
 /// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits.
 //= view.INV-4
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
 #[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]

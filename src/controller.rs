@@ -108,6 +108,12 @@ impl<L: Law<N>, const N: usize> Controller<L, N> {
         &self.law
     }
 
+    /// The law, to tell it what no observation holds: a laser scan, another route. It only advises,
+    /// so nothing done to it makes the robot unsafe.
+    pub const fn law_mut(&mut self) -> &mut L {
+        &mut self.law
+    }
+
     /// The shield.
     pub const fn shield(&self) -> &Shield {
         &self.shield

@@ -69,3 +69,18 @@ pub const PIONEER_3DX: Parameters = Parameters {
     blind_angle_max: 0.2,
     ..SRIKANDI_II_2012
 };
+
+/// A small round base with the front sonars of a P3-DX, for S4's corridors: 0.2 m of radius leave
+/// room in a safe path of 600 mm, into which the circle of a P3-DX, 602 mm across, does not fit. What
+/// stands in a corridor is promised to move no faster than 0.05 m/s once it has been seen to stand
+/// still; S1's least distance is not S4's, which looks at echoes from as near as 140 mm.
+pub const CORRIDOR_BASE: Parameters = Parameters {
+    min_distance: 0.05,
+    turn_distance: 0.1,
+    robot_radius: 0.2,
+    still_speed_max: 0.05,
+    range_error: 0.01,
+    reverse_speed_max: 0.0,
+    resume_clearance: 0.02,
+    ..PIONEER_3DX
+};

@@ -19,6 +19,9 @@ const TARGETS: &[(&str, Target)] = &[
     ("arcos_information", targets::arcos::information),
     ("avoid", targets::avoid::run),
     ("controller", targets::controller::run),
+    ("decide", targets::decide::run),
+    ("edge", targets::edge::run),
+    ("laser", targets::laser::run),
     ("shield", targets::shield::run),
 ];
 

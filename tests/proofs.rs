@@ -130,7 +130,15 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         turn_is_at_most_half, maneuver_turns_away, maneuver_speed_is_bounded, modes_settle,
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
+    decide: beliefs_are_on_the_simplex, updates_stay_on_the_simplex,
+        predictions_stay_on_the_simplex, table_2_never_stops, expected_losses_are_between,
+        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move,
+        losses_at_a_distance_are_between;
+    edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
+        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
+    laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
+        values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
     shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,

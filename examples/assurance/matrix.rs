@@ -49,13 +49,15 @@ impl Matrix {
             .collect();
         matrix.wrong.extend(missing);
 
-        for item in Folder::read("src", &predicates).items {
-            for id in &item.cites {
-                matrix
-                    .code
-                    .entry(id.clone())
-                    .or_default()
-                    .insert(link(&item));
+        for folder in ["src", "hw/src"] {
+            for item in Folder::read(folder, &predicates).items {
+                for id in &item.cites {
+                    matrix
+                        .code
+                        .entry(id.clone())
+                        .or_default()
+                        .insert(link(&item));
+                }
             }
         }
         for folder in ["proofs", "tests", "hw/tests", "sim/tests", "examples"] {
@@ -141,7 +143,7 @@ impl Matrix {
             .collect();
         for invariant in &self.invariants {
             if !self.code.contains_key(&invariant.id) {
-                wrong.push(format!("{}: not cited in src", invariant.id));
+                wrong.push(format!("{}: not cited in src or hw/src", invariant.id));
             }
             for engine in Engine::ALL {
                 if self.places(invariant, engine).is_none()

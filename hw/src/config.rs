@@ -88,6 +88,7 @@ impl std::error::Error for ConfigError {}
 pub fn preset(name: &str) -> Option<Parameters> {
     match name {
         "pioneer_3dx" => Some(preset::PIONEER_3DX),
+        "corridor_base" => Some(preset::CORRIDOR_BASE),
         "srikandi_ii_2012" => Some(preset::SRIKANDI_II_2012),
         "srikandi_ii_2011" => Some(preset::SRIKANDI_II_2011),
         _ => None,
@@ -137,7 +138,7 @@ pub fn default_toml() -> String {
     let mut text = String::from(
         "# Configuration of sidestep. Every line shows its default and may be left out.\n\
          # Lengths: m, cm, mm. Speeds: m/s, cm/s, mm/s. Times: s, ms. Angles: deg, rad.\n\n\
-         # Start from another robot's values: pioneer_3dx, srikandi_ii_2012, srikandi_ii_2011.\n\
+         # Start from another robot's values: pioneer_3dx, corridor_base, srikandi_ii_2012, srikandi_ii_2011.\n\
          preset = \"pioneer_3dx\"\n\
          # Sonars fitted: p3dx-16, or p3dx-8 for the front array only. What no sonar sees is not\n\
          # guarded: with p3dx-8 the robot must not be approached from behind.\n\
@@ -192,7 +193,7 @@ pub fn parse(text: &str, file: &str) -> Result<RobotConfig, ConfigError> {
     // The preset first: every other line changes it.
     for (key, value) in &entries {
         if key.get_ref() == "preset" {
-            let allowed = "pioneer_3dx, srikandi_ii_2012 or srikandi_ii_2011";
+            let allowed = "pioneer_3dx, corridor_base, srikandi_ii_2012 or srikandi_ii_2011";
             let name = word(value, "preset", allowed)?;
             parameters = preset(&name).ok_or_else(|| {
                 fail(
@@ -324,7 +325,12 @@ mod tests {
 
     #[test]
     fn every_preset_is_valid() {
-        for name in ["pioneer_3dx", "srikandi_ii_2012", "srikandi_ii_2011"] {
+        for name in [
+            "pioneer_3dx",
+            "corridor_base",
+            "srikandi_ii_2012",
+            "srikandi_ii_2011",
+        ] {
             let text = format!("preset = \"{name}\"\n");
             let parsed = parse(&text, name).expect(name);
             assert_eq!(Some(*parsed.core.parameters()), preset(name));

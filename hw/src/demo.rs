@@ -1,14 +1,16 @@
 //! The demonstration: a simulated robot on a real pseudo-terminal, driven through the serial
 //! stack, watched, and drawn.
 
+use crate::base;
 use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw};
 use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
 use crate::log::Halt;
-use crate::pilot::{Pilot, Tally, UsualLaw, settings};
+use crate::pilot::{Pilot, Tally, USUAL_LAW, settings, usual_law};
 use crate::transport;
 use sidestep::arcos::BaseParameters;
+use sidestep::law::Law;
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
 use sidestep_sim::simulation::{Outcome, Simulation};
 use std::error::Error;
@@ -60,7 +62,9 @@ impl Summary {
         driving.people + driving.obstacles + turning.people + turning.obstacles
     }
 
-    fn text(&self, scenario: &Scenario) -> String {
+    /// What came of it, in lines.
+    #[must_use]
+    pub fn text(&self, scenario: &Scenario) -> String {
         let mut text = String::new();
         let least = self.outcome.minimum_clearance_while_driving;
         let clearance = |metres: f64| {
@@ -147,7 +151,10 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
 }
 
 /// A folder that did not exist, named after a scenario and numbered.
-fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
+///
+/// # Errors
+/// If no folder can be made.
+pub fn run_folder(out: &Path, name: &str) -> std::io::Result<PathBuf> {
     fs::create_dir_all(out)?;
     let mut number = 1;
     loop {
@@ -169,7 +176,19 @@ impl Drop for SetOnDrop<'_> {
     }
 }
 
-/// Runs one scenario in real time over a pseudo-terminal and leaves its run folder.
+/// A scenario that was run with some law.
+pub struct Ran<L> {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What came of it.
+    pub summary: Summary,
+    /// The world at the end.
+    pub simulation: Simulation,
+    /// The pilot at the end.
+    pub pilot: Pilot<L, 16>,
+}
+
+/// Runs one scenario with the usual law in real time over a pseudo-terminal and leaves its run folder.
 ///
 /// # Errors
 /// If the pseudo-terminal, the port or the folder cannot be used.
@@ -179,6 +198,23 @@ pub fn run(
     signals: &Signals,
     status: &mut Status,
 ) -> Result<(PathBuf, Summary), Box<dyn Error>> {
+    let law = usual_law(options.config.core, base::ring(&options.config)?);
+    let ran = run_with(law, USUAL_LAW, scenario, options, signals, status)?;
+    Ok((ran.folder, ran.summary))
+}
+
+/// The same with any law, which the log calls `name`.
+///
+/// # Errors
+/// If the pseudo-terminal, the port or the folder cannot be used.
+pub fn run_with<L: Law<16>>(
+    law: L,
+    name: &'static str,
+    scenario: &Scenario,
+    options: &Options,
+    signals: &Signals,
+    status: &mut Status,
+) -> Result<Ran<L>, Box<dyn Error>> {
     let folder = run_folder(&options.out, scenario.name)?;
     let simulation = scenario.simulate()?;
     let (line, port) = Line::pty()?;
@@ -189,12 +225,14 @@ pub fn run(
         folder.display()
     ));
     let log = BufWriter::new(File::create(folder.join("log.jsonl"))?);
-    let mut pilot = Pilot::<_, 16>::new(
+    let mut pilot = Pilot::<_, 16>::with_law(
+        law,
         options.config,
         goal_from_start(scenario),
         settings(&options.config, true, None),
         Box::new(log),
     )?;
+    pilot.set_law_name(name);
     let clock = Clock::new(options.speed);
     let done = AtomicBool::new(false);
     let (ending, simulation) = std::thread::scope(|scope| {
@@ -223,15 +261,20 @@ pub fn run(
         return Err(format!("the log is not complete: {error}").into());
     }
     status.keep(&summary.text(scenario));
-    Ok((folder, summary))
+    Ok(Ran {
+        folder,
+        summary,
+        simulation,
+        pilot,
+    })
 }
 
 /// Writes summary and picture.
-fn leave(
+fn leave<L: Law<16>>(
     folder: &Path,
     scenario: &Scenario,
     simulation: &Simulation,
-    pilot: &Pilot<UsualLaw<16>, 16>,
+    pilot: &Pilot<L, 16>,
     summary: &Summary,
 ) -> std::io::Result<()> {
     let text = summary.text(scenario);
@@ -262,13 +305,27 @@ fn leave(
 ///
 /// # Errors
 /// If the scenario does not make a simulation, or its goal is out of range.
-pub fn run_in_memory<L: sidestep::law::Law<16>>(
+pub fn run_in_memory<L: Law<16>>(
     scenario: &Scenario,
     config: &RobotConfig,
     law: L,
 ) -> Result<(Summary, Simulation), Box<dyn Error>> {
+    run_watched(scenario, config, law, |_, _, _| false)
+}
+
+/// The same with a robot of `N` sonars and somebody who looks on, after every step: with the pilot,
+/// the simulation, and the time in ms. The run ends when they say so.
+///
+/// # Errors
+/// If the scenario does not make a simulation, or its goal is out of range.
+pub fn run_watched<L: sidestep::law::Law<N>, const N: usize>(
+    scenario: &Scenario,
+    config: &RobotConfig,
+    law: L,
+    mut watch: impl FnMut(&mut Pilot<L, N>, &Simulation, u64) -> bool,
+) -> Result<(Summary, Simulation), Box<dyn Error>> {
     let mut simulation = scenario.simulate()?;
-    let mut pilot = Pilot::<L, 16>::with_law(
+    let mut pilot = Pilot::<L, N>::with_law(
         law,
         *config,
         goal_from_start(scenario),
@@ -290,6 +347,9 @@ pub fn run_in_memory<L: sidestep::law::Law<16>>(
             }
         }
         while pilot.next_event().is_some() {}
+        if watch(&mut pilot, &simulation, now) {
+            break;
+        }
         if pilot.tally().arrived.is_some() {
             ending = Ending::Arrived;
             break;

@@ -34,6 +34,15 @@ pub struct Picture<'a> {
     pub stops: &'a [Stop],
 }
 
+/// What a picture shows besides, of a planned way.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plan<'a> {
+    /// The corners of the way.
+    pub way: &'a [Point],
+    /// Places with a word to each.
+    pub marks: &'a [(Point, String)],
+}
+
 /// Pixels per metre.
 const SCALE: f64 = 110.0;
 /// Everyone is drawn as a disc this often, ms.
@@ -42,8 +51,9 @@ const ROBOT: &str = "#1f5fbf";
 const PERSON: &str = "#2b8a3e";
 const STOP: &str = "#d6336c";
 const WALL: &str = "#495057";
+const PLAN: &str = "#e8590c";
 
-fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
+pub(crate) fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
     Text::new(content)
         .set("x", round(x))
         .set("y", round(y))
@@ -51,19 +61,29 @@ fn text(x: f64, y: f64, size: f64, content: &str) -> Text {
         .set("font-family", "sans-serif")
 }
 
-fn round(x: f64) -> f64 {
+pub(crate) fn round(x: f64) -> f64 {
     (x * 10.0).round() / 10.0
 }
 
 /// Draws the picture as SVG.
 #[must_use]
 pub fn draw(picture: &Picture) -> String {
+    draw_planned(picture, &Plan::default())
+}
+
+/// Draws the picture and a plan as SVG.
+#[must_use]
+pub fn draw_planned(picture: &Picture, plan: &Plan) -> String {
     // What is to be seen: the robot's way, the goal, and some room around.
     let mut low = picture.goal;
     let mut high = picture.goal;
-    for sample in picture.trace {
-        low = low.inf(&sample.pose.position);
-        high = high.sup(&sample.pose.position);
+    for place in picture.trace.iter().map(|sample| &sample.pose.position) {
+        low = low.inf(place);
+        high = high.sup(place);
+    }
+    for corner in plan.way {
+        low = low.inf(corner);
+        high = high.sup(corner);
     }
     let margin = Vector::new(1.6, 1.6);
     let (low, high) = (low - margin, high + margin);
@@ -83,6 +103,7 @@ pub fn draw(picture: &Picture) -> String {
         scene = scene.add(obstacle(shape, &at));
     }
     scene = metres(scene, low, high, &at);
+    scene = scene.add(planned(plan, &at));
 
     let mut ways: BTreeMap<usize, Vec<(u64, Point)>> = BTreeMap::new();
     for sample in picture.trace {
@@ -167,7 +188,7 @@ pub fn draw(picture: &Picture) -> String {
     document.add(scene).add(list).to_string()
 }
 
-fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
+pub(crate) fn cross(x: f64, y: f64, size: f64, colour: &str) -> Group {
     let stroke = |x1: f64, y1: f64, x2: f64, y2: f64| {
         Line::new()
             .set("x1", x + x1)
@@ -223,6 +244,37 @@ fn obstacle(shape: &Shape, at: &dyn Fn(Point) -> (f64, f64)) -> Group {
             )
         }
     }
+}
+
+/// A planned way, dashed, and the marks.
+fn planned(plan: &Plan, at: &dyn Fn(Point) -> (f64, f64)) -> Group {
+    let mut group = Group::new();
+    for pair in plan.way.windows(2) {
+        let ((x1, y1), (x2, y2)) = (at(pair[0]), at(pair[1]));
+        group = group.add(
+            Line::new()
+                .set("x1", x1)
+                .set("y1", y1)
+                .set("x2", x2)
+                .set("y2", y2)
+                .set("stroke", PLAN)
+                .set("stroke-width", 1.5)
+                .set("stroke-dasharray", "7 5"),
+        );
+    }
+    for (place, word) in plan.marks {
+        let (x, y) = at(*place);
+        group = group
+            .add(
+                Circle::new()
+                    .set("cx", x)
+                    .set("cy", y)
+                    .set("r", 4)
+                    .set("fill", PLAN),
+            )
+            .add(text(x + 6.0, y + 14.0, 10.0, word).set("fill", PLAN));
+    }
+    group
 }
 
 /// A grid of metres, faint.

@@ -7,12 +7,16 @@
 
 pub mod base;
 pub mod config;
+pub mod decide;
+pub mod coverage;
 pub mod demo;
 pub mod draw;
 pub mod drive;
+pub mod edge;
 pub mod emulate;
 pub mod episodes;
 pub mod faults;
+pub mod laser;
 pub mod log;
 pub mod pilot;
 pub mod replay;

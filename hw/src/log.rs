@@ -5,6 +5,7 @@
 //! Lines are written one by one and whole, so that a run that ends at once loses at most a line.
 
 use crate::config::{HeadingSource, RobotConfig, Sonars};
+use crate::pilot::USUAL_LAW;
 use serde::{Deserialize, Serialize};
 use sidestep::config::{Config, FIELDS, Parameters};
 use std::collections::BTreeMap;
@@ -18,6 +19,9 @@ pub struct Header {
     pub log: u32,
     /// Version of the program that wrote it.
     pub program: String,
+    /// The law that drove; in logs from before there were several, the usual one.
+    #[serde(default = "usual_law")]
+    pub law: String,
     /// The base's subclass, which says what its units are.
     pub subclass: String,
     /// The goal in the odometry frame, metres.
@@ -102,14 +106,19 @@ pub enum Halt {
     Operator,
 }
 
+fn usual_law() -> String {
+    USUAL_LAW.to_owned()
+}
+
 impl Header {
-    /// The header of a run.
+    /// The header of a run with the usual law.
     #[must_use]
     pub fn new(config: &RobotConfig, subclass: &str, goal: [f32; 2]) -> Self {
         let values = config.core.values();
         Self {
             log: 1,
             program: env!("CARGO_PKG_VERSION").to_owned(),
+            law: usual_law(),
             subclass: subclass.to_owned(),
             goal: goal.map(f64::from),
             sonars: config.sonars,

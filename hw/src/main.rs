@@ -2,8 +2,11 @@
 
 use clap::{Parser, Subcommand};
 use sidestep_hw::config::{self, RobotConfig, Sonars};
+use sidestep_hw::coverage;
+use sidestep_hw::decide;
 use sidestep_hw::demo::{self, Options};
 use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
+use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
 use sidestep_hw::pilot::{Pilot, settings};
@@ -40,12 +43,16 @@ enum Command {
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
     /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
-    /// people; needs --data).
+    /// people; needs --data), decide (S2's experiment with its decision and a noisy sonar; leaves
+    /// timeline.svg too: belief, decision and distance over time), edge (S4: a planned way through
+    /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
+    /// and no log), coverage (every edge of a floor, some of them blocked, by S4 with a laser;
+    /// likewise; --data FILE for a floor of your own).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
         scenario: String,
-        /// The ETH recording obsmat.txt, for the scenario hotel.
+        /// The ETH recording obsmat.txt, for the scenario hotel; a floor (TOML), for coverage.
         #[arg(long, value_name = "FILE")]
         data: Option<PathBuf>,
         /// Where in the recording to start, seconds.
@@ -57,6 +64,9 @@ enum Command {
         /// Share of echoes that get lost, 0 to 1.
         #[arg(long, default_value_t = 0.02)]
         dropout: f64,
+        /// Share of readings that are false echoes, 0 to 1: none, but 0.01 for decide.
+        #[arg(long)]
+        false_echo: Option<f64>,
         /// People walk on even into a robot that stands still.
         #[arg(long)]
         inconsiderate: bool,
@@ -191,6 +201,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             start_time,
             seed,
             dropout,
+            false_echo,
             inconsiderate,
             speed,
             out,
@@ -199,11 +210,13 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             if !(0.1..=20.0).contains(&speed) {
                 return Err(format!("--speed is {speed}, allowed is 0.1 to 20").into());
             }
+            let decides = scenario == decide::NAME;
             let knobs = Knobs {
                 seed,
                 courteous: !inconsiderate,
                 sonar_faults: Faults {
                     dropout,
+                    false_echo: false_echo.unwrap_or(if decides { 0.01 } else { 0.0 }),
                     ..Faults::default()
                 },
                 ..Knobs::default()
@@ -215,7 +228,10 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 knobs,
                 speed,
                 out,
-                config: read_config(config.as_deref())?,
+                config: match config {
+                    None if decides => decide::table_1()?,
+                    config => read_config(config.as_deref())?,
+                },
             })
         }
         Command::Run {
@@ -260,7 +276,33 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
 
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
+    if options.scenario == edge::NAME {
+        edge::demo(options, &mut status)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut contacts = 0;
+    if options.scenario == decide::NAME {
+        let (folder, touched) = decide::demonstrate(options, &SIGNALS, &mut status)?;
+        status.keep(&format!(
+            "picture: {}\n",
+            folder.join("picture.svg").display()
+        ));
+        return match touched {
+            0 => Ok(ExitCode::SUCCESS),
+            _ => Err(format!("the robot touched something {touched} times while it moved").into()),
+        };
+    }
+    if options.scenario == coverage::demo::NAME {
+        let (folder, run) = coverage::demo::run(options, &mut status)?;
+        let picture = folder.join("picture.svg");
+        status.keep(&format!("picture: {}\n", picture.display()));
+        return match run.summary.contacts_while_moving() {
+            0 => Ok(ExitCode::SUCCESS),
+            contacts => {
+                Err(format!("the robot touched something {contacts} times while it moved").into())
+            }
+        };
+    }
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();

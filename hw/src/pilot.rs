@@ -59,6 +59,8 @@ pub struct Pilot<L, const N: usize> {
     controller: Controller<L, N>,
     log: Box<dyn Write + Send>,
     log_error: Option<String>,
+    /// What the log calls the law.
+    law_name: &'static str,
     header_written: bool,
     events: VecDeque<(u64, String)>,
     /// Events from before the log began.
@@ -104,6 +106,9 @@ pub fn settings(config: &RobotConfig, serial: bool, baud: Option<u32>) -> Settin
         ..defaults
     }
 }
+
+/// What a log calls the law that drives unless another is asked for.
+pub const USUAL_LAW: &str = "avoid";
 
 /// The law that drives unless another is asked for: S1's, with a way out of where it is stuck.
 pub type UsualLaw<const N: usize> = Escape<Avoid, N>;
@@ -152,6 +157,7 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             controller: Controller::new(config.core, base::ring(&config)?, law, goal)?,
             log,
             log_error: None,
+            law_name: USUAL_LAW,
             header_written: false,
             events: VecDeque::new(),
             before: Vec::new(),
@@ -164,6 +170,11 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
             position_lost: false,
             disobeys: None,
         })
+    }
+
+    /// Says what the log is to call the law, so that a replay knows which one it was.
+    pub const fn set_law_name(&mut self, name: &'static str) {
+        self.law_name = name;
     }
 
     /// Takes in bytes from the robot, and ticks the controller for every packet among them.
@@ -381,7 +392,10 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
     fn begin_log(&mut self, subclass: &str) {
         if !self.header_written {
             self.header_written = true;
-            let header = Header::new(&self.config, subclass, [self.goal.x, self.goal.y]);
+            let header = Header {
+                law: self.law_name.to_owned(),
+                ..Header::new(&self.config, subclass, [self.goal.x, self.goal.y])
+            };
             self.write(&header);
             // What happened before the robot said who it is.
             for (t, text) in std::mem::take(&mut self.before) {
@@ -420,6 +434,16 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
     /// What the controller decided last.
     pub const fn latest(&self) -> Option<&Decision<N>> {
         self.latest.as_ref()
+    }
+
+    /// The law.
+    pub const fn law(&self) -> &L {
+        self.controller.law()
+    }
+
+    /// The law, to tell it what no packet holds: a laser scan, another route.
+    pub const fn law_mut(&mut self) -> &mut L {
+        self.controller.law_mut()
     }
 
     /// What the run has come to.

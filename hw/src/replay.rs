@@ -2,12 +2,14 @@
 
 use crate::base::{self, Base};
 use crate::config::{RobotConfig, Sonars};
+use crate::decide;
 use crate::log::{Log, Record, Told, from_hex};
-use crate::pilot::{told, usual_law};
+use crate::pilot::{USUAL_LAW, told, usual_law};
 use nalgebra::Vector2;
 use sidestep::arcos::{BaseParameters, Frame, StandardInformation};
 use sidestep::config::{Config, Parameters};
 use sidestep::controller::Controller;
+use sidestep::law::Law;
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, SonarSample};
 use sidestep::quantity::Instant;
 use sidestep::ring::{Placement, Ring};
@@ -39,18 +41,31 @@ pub fn log(log: &Log) -> Result<Replayed, String> {
 }
 
 fn run<const N: usize>(log: &Log, config: &RobotConfig) -> Result<Replayed, String> {
+    let core = config.core;
+    let line_1 = |error: &dyn std::fmt::Display| format!("line 1: {error}");
+    let ring = base::ring::<N>(config).map_err(|error| line_1(&error))?;
+    match log.header.law.as_str() {
+        USUAL_LAW => run_law(log, config, usual_law(core, ring)),
+        decide::NAME => {
+            let settings = decide::settings(config).map_err(|error| line_1(&error))?;
+            run_law(log, config, decide::law(core, ring, settings))
+        }
+        other => Err(line_1(&format!("no law is called {other:?} here"))),
+    }
+}
+
+fn run_law<L: Law<N>, const N: usize>(
+    log: &Log,
+    config: &RobotConfig,
+    law: L,
+) -> Result<Replayed, String> {
     let parameters = BaseParameters::for_subclass(log.header.subclass.as_bytes())
         .ok_or_else(|| format!("line 1: unknown subclass {:?}", log.header.subclass))?;
     let goal = log.header.goal.map(|coordinate| coordinate as f32);
     let ring = base::ring::<N>(config).map_err(|error| format!("line 1: {error}"))?;
     let mut base = Base::<N>::new(parameters, config);
-    let mut controller = Controller::new(
-        config.core,
-        ring,
-        usual_law(config.core, ring),
-        Vector2::new(goal[0], goal[1]),
-    )
-    .map_err(|error| format!("line 1: {error}"))?;
+    let mut controller = Controller::new(config.core, ring, law, Vector2::new(goal[0], goal[1]))
+        .map_err(|error| format!("line 1: {error}"))?;
     let mut ticks = 0;
     for (line, record) in &log.records {
         let (decided, expected) = match record {

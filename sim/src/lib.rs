@@ -5,9 +5,10 @@
 //!   recorded people and cluttered worlds.
 //! - [`sonar`], [`compass`], [`base`]: what the robot senses with, wrongly where asked to, and what
 //!   it drives with.
+//! - [`laser`]: a scanner beside them, not on the serial line.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
 //!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
-//! - [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
+//! - [`corridor`]: planned ways through corridors; [`scenario`]: named situations, and seeded variations of them; [`episode`]: situations made up
 //!   from a seed; [`simulation`]: everything advanced together, with a judgement of every contact;
 //!   [`truth`]: which assumption of a shield did not hold in it.
 //!
@@ -31,10 +32,12 @@
 pub mod barn;
 pub mod base;
 pub mod compass;
+pub mod corridor;
 pub mod episode;
 mod error;
 pub mod eth;
 pub mod geometry;
+pub mod laser;
 pub mod link;
 pub mod person;
 pub mod robot;

@@ -16,7 +16,7 @@ use crate::sonar;
 use crate::world::World;
 
 /// The scenarios that need no data file.
-pub const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 10] = [
     ENCOUNTERS[0].name,
     ENCOUNTERS[1].name,
     ENCOUNTERS[2].name,
@@ -26,6 +26,7 @@ pub const NAMES: [&str; 9] = [
     CORRIDOR_WALKER,
     EMPTY_ROOM,
     BLOCKED_WAY,
+    APPROACH,
 ];
 
 /// Someone who walks straight on towards where the robot is going to be.
@@ -72,6 +73,8 @@ const CORRIDOR: &str = "corridor";
 const CORRIDOR_WALKER: &str = "corridor-walker";
 const EMPTY_ROOM: &str = "empty-room";
 const BLOCKED_WAY: &str = "blocked-way";
+/// What S2's experiment is called.
+pub const APPROACH: &str = "approach";
 
 /// The robot's speed on the way to its goal, for which the encounters are timed (m/s): S1 L294.
 pub const CRUISE: f64 = 0.2;
@@ -143,6 +146,7 @@ impl Scenario {
             CORRIDOR_WALKER => return corridor(knobs, true),
             EMPTY_ROOM => return empty_room(knobs),
             BLOCKED_WAY => return blocked_way(knobs),
+            APPROACH => return approach(knobs),
             _ => {}
         }
         match ENCOUNTERS.iter().find(|encounter| encounter.name == name) {
@@ -428,6 +432,37 @@ fn empty_room(knobs: &Knobs) -> Result<Scenario, Error> {
         start: Pose::new(0.0, 0.0, 0.0),
         goal: Point::new(4.0, 0.0),
         time_limit_ms: 60_000,
+        robot: robot_with(knobs),
+        sonar_faults: knobs.sonar_faults,
+        seed: knobs.seed,
+    })
+}
+
+/// S2's experiment (section 4): in a laboratory of 5 by 4 m someone walks straight on in front of the
+/// robot and towards it, at 0.15 to 0.3 m/s (its Table 1) as the seed has it.
+fn approach(knobs: &Knobs) -> Result<Scenario, Error> {
+    let mut rng = ChaCha8Rng::seed_from_u64(knobs.seed);
+    rng.set_stream(u64::MAX - 1);
+    let mut world = World::new();
+    world.add_room(Point::new(0.0, 0.0), Point::new(5.0, 4.0))?;
+    let speed = rng.random_range(0.15..=0.3);
+    let speed = knobs.person_speed.unwrap_or(speed);
+    let line = Motion::Line {
+        start: Point::new(rng.random_range(3.6..=4.6), rng.random_range(1.7..=2.3)),
+        heading: PI,
+        speed,
+        delay: rng.random_range(0.0..=3.0),
+    };
+    world.add_person(someone(line, knobs)?.stopped_by_walls());
+    Ok(Scenario {
+        name: APPROACH,
+        description: format!(
+            "S2's laboratory: someone comes straight at the robot at {speed:.2} m/s"
+        ),
+        world,
+        start: Pose::new(0.7, 2.0, 0.0),
+        goal: Point::new(4.2, 2.0),
+        time_limit_ms: 120_000,
         robot: robot_with(knobs),
         sonar_faults: knobs.sonar_faults,
         seed: knobs.seed,

@@ -59,16 +59,26 @@ pub fn is_frame_of(bytes: &[u8], number: u8, arguments: &[u8]) -> bool {
 /// under one that was. `delivered` holds the place and length of each frame delivered, in order.
 #[must_use]
 pub fn nothing_is_lost(stream: &[u8], delivered: &[(usize, usize)], held: usize) -> bool {
+    nothing_is_lost_of(begins_with_frame, stream, delivered, held)
+}
+
+/// The same for any kind of frame, which `begins` recognises at the beginning of bytes.
+pub(crate) fn nothing_is_lost_of(
+    begins: fn(&[u8]) -> bool,
+    stream: &[u8],
+    delivered: &[(usize, usize)],
+    held: usize,
+) -> bool {
     let mut next = 0;
     let mut place = 0;
     while place < held {
         if next < delivered.len() && delivered[next].0 == place {
-            if !begins_with_frame(&stream[place..]) {
+            if !begins(&stream[place..]) {
                 return false;
             }
             place += delivered[next].1;
             next += 1;
-        } else if begins_with_frame(&stream[place..]) {
+        } else if begins(&stream[place..]) {
             return false;
         } else {
             place += 1;

@@ -14,8 +14,12 @@
 
 pub mod arcos;
 pub mod avoid;
+pub mod decide;
+pub mod coverage;
+pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
+pub mod laser;
 pub mod math;
 pub mod monitor;
 pub mod shield;

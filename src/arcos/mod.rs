@@ -24,6 +24,7 @@ mod odometry;
 mod reader;
 mod receiver;
 
+pub use crate::stream::Reception;
 pub use base::{BaseParameters, P3DX_SONARS, SonarPlacement};
 pub use command::{Argument, HostCommand};
 pub use configuration::Configuration;
@@ -37,4 +38,4 @@ pub use information::{
 };
 pub use odometry::{Odometry, shortest_delta};
 pub use reader::PacketError;
-pub use receiver::{BoundedReceiver, Receiver, Reception};
+pub use receiver::{ArcosFraming, BoundedReceiver, Receiver};

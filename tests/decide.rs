@@ -1,0 +1,699 @@
+//! Chapter `decide`: S2's filter, losses and sensor models, and the law round a law.
+
+mod common;
+
+use common::{any_f32, between, pioneer_with, view};
+use nalgebra::Vector2;
+use proptest::prelude::*;
+use sidestep::avoid::Avoid;
+use sidestep::config::Config;
+use sidestep::decide::{
+    self, BadLoss, BadSettings, Belief, CameraLook, Decide, DistanceLoss, Dominated, Hearing,
+    LossTable, NoBelief, NotStochastic, ONE, Parameters, Response, Settings, SonarModel,
+    TransitionMatrix,
+};
+use sidestep::failsafe::StopReason;
+use sidestep::law::{Advice, Law};
+use sidestep::observation::SonarReading;
+use sidestep::preset;
+use sidestep::quantity::{Angle, Instant, Length};
+use sidestep::view::{Memory, View};
+use sidestep_spec::{avoid as motion, decide as law};
+
+/// Parts by which rounding may move a probability.
+const ROUNDING: u32 = 8;
+
+fn metres(metres: f32) -> Length {
+    Length::metres(metres).expect("a length")
+}
+
+fn table_1() -> Config {
+    Config::new(preset::SRIKANDI_II_2011).expect("the preset is good")
+}
+
+fn usual() -> Settings {
+    Settings::usual(&table_1()).expect("usual")
+}
+
+/// A weight as evidence gives it, or next to none.
+fn weight() -> impl Strategy<Value = f32> {
+    prop_oneof![6 => 0.0_f32..=1.0, 1 => Just(0.0), 1 => 0.0_f32..1e-6, 1 => 0.0_f32..1e30]
+}
+
+/// A likelihood that does not vanish.
+fn likelihood() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => 0.001_f32..=1.0, 1 => 1e-6_f32..1e6]
+}
+
+/// Any belief in two states.
+fn belief() -> impl Strategy<Value = Belief<2>> {
+    prop_oneof![4 => 0..=ONE, 1 => Just(0), 1 => Just(ONE), 1 => 0..100_u32].prop_map(|first| {
+        Belief::from_weights(&[first as f32, (ONE - first) as f32]).expect("weights")
+    })
+}
+
+/// Losses in seconds, of a whole number of milliseconds.
+fn seconds() -> impl Strategy<Value = f32> {
+    prop_oneof![4 => 0..20_000_u32, 1 => 0..10_000_000_u32, 1 => Just(0)]
+        .prop_map(|ms| ms as f32 / 1000.0)
+}
+
+proptest! {
+    #![proptest_config(common::cases(2_000))]
+
+    //= decide.INV-1
+    //= decide.INV-2
+    #[test]
+    fn beliefs_are_on_the_simplex(weights in [any_f32(), any_f32(), any_f32(), any_f32()]) {
+        let belief = Belief::from_weights(&weights);
+        prop_assert!(law::only_weights_are_beliefs(&weights, belief.is_ok()));
+        match belief {
+            Ok(belief) => {
+                prop_assert!(law::on_simplex(belief.parts(), ONE));
+                let sum: f32 = (0..4).map(|state| belief.probability(state)).sum();
+                prop_assert!((sum - 1.0).abs() < 1e-6);
+                prop_assert_eq!(belief.probability(4), 0.0);
+            }
+            Err(NoBelief::NotAWeight { state, value }) => {
+                prop_assert_eq!(weights[state].to_bits(), value.to_bits());
+                prop_assert!(!(0.0..=1e30).contains(&value));
+            }
+            Err(NoBelief::NoEvidence) => prop_assert!(weights.iter().all(|w| *w == 0.0)),
+        }
+    }
+
+    /// Usable weights are always a belief, and nothing else is.
+    //= decide.INV-2
+    #[test]
+    fn weights_are_beliefs(weights in [weight(), weight(), weight()]) {
+        let belief = Belief::from_weights(&weights);
+        prop_assert!(law::only_weights_are_beliefs(&weights, belief.is_ok()));
+        prop_assert_eq!(belief.is_ok(), weights.iter().any(|weight| *weight > 0.0));
+        if let Ok(belief) = belief {
+            let total: f64 = weights.iter().map(|weight| f64::from(*weight)).sum();
+            for (state, weight) in weights.iter().enumerate() {
+                let exact = f64::from(*weight) / total;
+                let found = f64::from(belief.probability(state));
+                prop_assert!((found - exact).abs() <= 12.0 / f64::from(ONE));
+            }
+        }
+    }
+
+    /// Updates, predictions and floors of three states, again and again.
+    //= decide.INV-1
+    #[test]
+    fn filtering_stays_on_the_simplex(
+        start in [0.01_f32..1.0, 0.0_f32..1.0, 0.0_f32..1.0],
+        steps in prop::collection::vec([likelihood(), likelihood(), likelihood()], 1..40),
+        leave in 0.0_f32..0.5,
+        floor in 0.0_f32..=0.33,
+    ) {
+        let rows = [
+            [1.0 - leave, leave, 0.0],
+            [leave / 2.0, 1.0 - leave, leave / 2.0],
+            [0.0, leave, 1.0 - leave],
+        ];
+        let transition = TransitionMatrix::new(&rows).expect("stochastic");
+        let mut belief = Belief::from_weights(&start).expect("weights");
+        for step in &steps {
+            let predicted = belief.predicted(&transition);
+            prop_assert!(law::on_simplex(predicted.parts(), ONE));
+            let updated = predicted.updated(step).expect("evidence");
+            prop_assert!(law::on_simplex(updated.parts(), ONE));
+            belief = updated.floored(floor).expect("a floor");
+            prop_assert!(law::on_simplex(belief.parts(), ONE));
+            let least = (floor * ONE as f32) as u32;
+            prop_assert!(belief.parts().iter().all(|part| *part >= least));
+        }
+    }
+
+    //= decide.INV-3
+    #[test]
+    fn without_a_belief_the_safest(first in any_f32(), second in any_f32(), prior in belief()) {
+        let posterior = prior.updated(&[first, second]);
+        for (table, actions) in [(LossTable::TABLE_2, 2), (LossTable::TEXT, 2)] {
+            let action = table.respond(&posterior);
+            prop_assert!(law::no_belief_is_safest(posterior.is_ok(), action, actions));
+        }
+    }
+
+    //= decide.INV-4
+    #[test]
+    fn odds_are_multiplied(prior in belief(), l in [likelihood(), likelihood()]) {
+        if let Ok(posterior) = prior.updated(&l) {
+            let both = |belief: &Belief<2>| [0, 1].map(|i| f64::from(belief.probability(i)));
+            let error = f64::from(ROUNDING) / f64::from(ONE);
+            prop_assert!(law::odds_law(both(&posterior), l.map(f64::from), both(&prior), error));
+            let reference = law::e21(&l.map(f64::from), &both(&prior)).expect("a posterior");
+            prop_assert!((both(&posterior)[0] - reference[0]).abs() <= error);
+        }
+    }
+
+    /// Likelihoods that are the same leave the belief as it is.
+    //= decide.INV-4
+    #[test]
+    fn no_news_changes_nothing(prior in belief(), l in likelihood()) {
+        let posterior = prior.updated(&[l, l]).expect("evidence");
+        prop_assert!(posterior.parts()[0].abs_diff(prior.parts()[0]) <= ROUNDING);
+        let both = |belief: &Belief<2>| [0, 1].map(|i| f64::from(belief.probability(i)));
+        let error = f64::from(ROUNDING) / f64::from(ONE);
+        prop_assert!(law::odds_law(both(&posterior), [1.0; 2], both(&prior), error));
+    }
+
+    //= decide.INV-5
+    #[test]
+    fn favour_makes_probable(
+        prior in belief(), l in [likelihood(), likelihood()], more in 1.0_f32..10.0,
+    ) {
+        let less = prior.updated(&l).expect("evidence");
+        let favoured = prior.updated(&[l[0] * more, l[1] / more]).expect("evidence");
+        let (less, more) = (less.parts()[0], favoured.parts()[0]);
+        prop_assert!(law::monotone_in_the_ratio(less, more, ROUNDING));
+    }
+
+    //= decide.INV-6
+    #[test]
+    fn only_stochastic_matrices(rows in [[any_f32(), any_f32()], [any_f32(), any_f32()]]) {
+        let matrix = TransitionMatrix::new(&rows);
+        for row in &rows {
+            prop_assert!(law::only_stochastic_is_accepted(row, matrix.is_ok()));
+        }
+        match matrix {
+            Ok(_) => {}
+            Err(NotStochastic::Entry { from, to, value }) => {
+                prop_assert_eq!(rows[from][to].to_bits(), value.to_bits());
+                prop_assert!(!(0.0..=1.0).contains(&value));
+            }
+            Err(NotStochastic::Row { from, sum }) => {
+                prop_assert_eq!(rows[from][0] + rows[from][1], sum);
+            }
+        }
+    }
+
+    /// Good matrices are taken, and their rows predict.
+    //= decide.INV-6
+    #[test]
+    fn stochastic_matrices(vanish in 0.0_f32..=1.0, appear in 0.0_f32..=1.0, belief in belief()) {
+        let rows = [[1.0 - vanish, vanish], [appear, 1.0 - appear]];
+        let matrix = TransitionMatrix::new(&rows);
+        for row in &rows {
+            prop_assert!(law::only_stochastic_is_accepted(row, matrix.is_ok()));
+        }
+        let matrix = matrix.expect("stochastic");
+        let before = [0, 1].map(|i| f64::from(belief.probability(i)));
+        let exact = law::e16(&before, &rows.map(|row| row.map(f64::from).to_vec()));
+        let found = belief.predicted(&matrix);
+        prop_assert!((f64::from(found.probability(0)) - exact[0]).abs() < 1e-6);
+        let row = matrix.row(0).expect("a row");
+        prop_assert!((row.probability(1) - vanish).abs() < 1e-6);
+        prop_assert!(matrix.row(2).is_none());
+    }
+
+    //= decide.INV-7
+    #[test]
+    fn expected_losses_are_between(
+        losses in [[seconds(), seconds()], [seconds(), seconds()]], belief in belief(),
+    ) {
+        let table = LossTable::with_dominated(&losses).expect("losses");
+        let rows = table.milliseconds();
+        for (row, expected) in rows.iter().zip(table.expected(&belief)) {
+            prop_assert!(law::between_losses(row, expected, ONE));
+        }
+    }
+
+    /// Between the two distances the losses lie between those of the two tables.
+    //= decide.INV-7
+    #[test]
+    fn losses_at_a_distance_are_between(
+        far in [seconds(), seconds()], near in [seconds(), seconds()],
+        distance in between(0.0, 3.0), least in 0.0_f32..1.0, span in 0.02_f32..3.0,
+    ) {
+        let [far, near] = [far, near].map(|row| LossTable::with_dominated(&[row]).expect("losses"));
+        let loss = DistanceLoss::with_dominated(far, metres(least + span), near, metres(least))
+            .expect("distances");
+        let at = loss.at(metres(distance));
+        for state in 0..2 {
+            let ends = [far, near].map(|table| table.milliseconds()[0][state]);
+            prop_assert!(law::between_losses(&ends, at.milliseconds()[0][state].into(), 1));
+        }
+        if distance >= least + span + 0.001 {
+            prop_assert_eq!(at, far);
+        }
+        if distance <= least - 0.001 {
+            prop_assert_eq!(at, near);
+        }
+    }
+
+    //= decide.INV-8
+    #[test]
+    fn ties_go_to_the_safest(losses in [-5_i64..5, -5..5, -5..5, -5..5], tie in 0_i64..3) {
+        let chosen = decide::safest_of_the_least(&losses, tie);
+        prop_assert!(law::safest_of_the_best(&losses, tie, chosen));
+    }
+
+    /// The reference chooses the same, wherever rounding cannot matter.
+    //= decide.INV-8
+    #[test]
+    fn the_reference_chooses_the_same(
+        losses in [[seconds(), seconds()], [seconds(), seconds()], [seconds(), seconds()]],
+        belief in belief(),
+    ) {
+        let table = LossTable::with_dominated(&losses).expect("losses");
+        let rows: Vec<Vec<f64>> = losses.iter().map(|row| row.map(f64::from).to_vec()).collect();
+        let posterior = [0, 1].map(|i| f64::from(belief.probability(i)));
+        let expected = law::e22(&rows, &posterior);
+        let chosen = table.choose(&belief);
+        prop_assert!(law::safest_of_the_best(&table.expected(&belief), i64::MAX, 2));
+        let reference = law::choose(&rows, Some(&posterior));
+        let spread: f64 = rows.iter().flatten().copied().fold(0.0, f64::max);
+        let off = expected[chosen] - expected[reference];
+        prop_assert!(off <= 1e-5 * (1.0 + spread), "{off}");
+    }
+
+    //= decide.INV-9
+    #[test]
+    fn table_2_never_stops(belief in belief()) {
+        let [maneuver, stop] = LossTable::TABLE_2.expected(&belief);
+        let chosen = LossTable::TABLE_2.choose(&belief);
+        prop_assert!(law::table_2_never_stops(maneuver, stop, chosen, ONE));
+        // With the text's losses, only where an obstacle is certain.
+        let certain = belief.parts()[1] <= ROUNDING;
+        prop_assert_eq!(LossTable::TEXT.choose(&belief) == 1, certain);
+    }
+
+    //= decide.INV-10
+    #[test]
+    fn units_and_constants_do_not_matter(
+        losses in [[0_u16.., 0_u16..], [0_u16.., 0_u16..], [0_u16.., 0_u16..]],
+        scale in 1_u16..100, constants in [0_u16.., 0_u16..], belief in belief(),
+    ) {
+        let table = |f: &dyn Fn(u16, usize) -> u32| {
+            let row = |row: [u16; 2]| [0, 1].map(|state| f(row[state], state) as f32 / 1000.0);
+            LossTable::with_dominated(&losses.map(row)).expect("losses")
+        };
+        let plain = table(&|loss, _| loss.into());
+        let other = table(&|loss, state| {
+            u32::from(loss) * u32::from(scale) + u32::from(constants[state])
+        });
+        prop_assert!(law::same_choice(plain.choose(&belief), other.choose(&belief)));
+    }
+
+    //= decide.INV-11
+    #[test]
+    fn dominated_actions_are_refused(losses in [[seconds(), seconds()], [seconds(), seconds()]]) {
+        let whole = LossTable::with_dominated(&losses).expect("losses");
+        match LossTable::new(&losses) {
+            Ok(table) => prop_assert!(law::nothing_dominated(table.milliseconds())),
+            Err(BadLoss::Dominated(Dominated { action, by })) => {
+                prop_assert!(!law::nothing_dominated(whole.milliseconds()));
+                let rows = whole.milliseconds();
+                prop_assert!((0..2).all(|state| rows[by][state] <= rows[action][state]));
+            }
+            Err(other) => prop_assert!(false, "{other}"),
+        }
+    }
+
+    /// Other distances than the presets'.
+    //= decide.INV-12
+    #[test]
+    fn nearer_is_never_bolder_elsewhere(
+        least in 0.1_f32..1.0, span in 0.1_f32..2.0, near in 0.0_f32..3.0, farther in 0.0_f32..1.0,
+        p in 0.0_f32..=1.0, more in 0.0_f32..=1.0,
+    ) {
+        let table = |rows: &[[f32; 2]; 3]| LossTable::with_dominated(rows).expect("losses");
+        let far_loss = table(&Parameters::USUAL.far_loss);
+        let near_loss = table(&Parameters::USUAL.near_loss);
+        let loss = DistanceLoss::new(far_loss, metres(least + span), near_loss, metres(least))
+            .expect("losses");
+        let belief = |p: f32| Belief::from_weights(&[p, 1.0 - p]).expect("weights");
+        let choice = |distance: f32, p: f32| loss.at(metres(distance)).choose(&belief(p));
+        prop_assert!(law::no_bolder(choice(near + farther, p), choice(near, p)));
+        let probable = p + more * (1.0 - p);
+        prop_assert!(law::no_bolder(choice(near, p), choice(near, probable)));
+    }
+
+    //= decide.INV-13
+    #[test]
+    fn decisions_never_move(speed in any_f32(), turn_rate in any_f32(), which in 0..3_usize) {
+        let response = [Response::Continue, Response::Maneuver, Response::Stop][which];
+        let (given, overruled) = decide::overruled(Advice { speed, turn_rate }, response);
+        let stop = response == Response::Stop;
+        let bits = [given.speed, given.turn_rate];
+        prop_assert!(law::never_into_motion(stop, [speed, turn_rate], bits));
+        prop_assert_eq!(overruled, stop && speed > 0.0);
+    }
+}
+
+/// Every distance in millimetres up to 2 m, 257 probabilities.
+//= decide.INV-12
+#[test]
+fn nearer_is_never_bolder() {
+    let settings = usual();
+    let beliefs: Vec<Belief<2>> = (0..=256_u16)
+        .map(|k| Belief::from_weights(&[f32::from(k), f32::from(256 - k)]).expect("weights"))
+        .collect();
+    let response = |mm: u16, belief: &Belief<2>| {
+        settings.respond(belief, metres(f32::from(mm) / 1000.0)) as usize
+    };
+    for mm in 0..2_000 {
+        for pair in beliefs.windows(2) {
+            let here = response(mm, &pair[0]);
+            assert!(law::no_bolder(response(mm + 1, &pair[0]), here), "{mm} mm");
+            assert!(law::no_bolder(here, response(mm, &pair[1])), "{mm} mm");
+        }
+    }
+}
+
+/// What the chapter says of the usual losses.
+#[test]
+fn usual_losses_are_as_described() {
+    let settings = usual();
+    let respond = |p: f32, distance: f32| {
+        let belief = Belief::from_weights(&[p, 1.0 - p]).expect("weights");
+        settings.respond(&belief, metres(distance))
+    };
+    assert_eq!(respond(0.49, 1.2), Response::Continue);
+    assert_eq!(respond(0.51, 1.2), Response::Maneuver);
+    assert_eq!(respond(0.12, 0.4), Response::Continue);
+    assert_eq!(respond(0.135, 0.4), Response::Maneuver);
+    assert_eq!(respond(1.0, 0.55), Response::Maneuver);
+    assert_eq!(respond(1.0, 0.53), Response::Stop);
+    // A doubtful echo is heeded at no distance.
+    assert_eq!(respond(Parameters::USUAL.newcomer, 0.0), Response::Continue);
+}
+
+/// Each parameter is refused by name, and so are losses that make an action pointless.
+#[test]
+fn settings_are_checked() {
+    let config = table_1();
+    let refused = |change: &dyn Fn(&mut Parameters)| {
+        let mut parameters = Parameters::USUAL;
+        change(&mut parameters);
+        Settings::new(parameters, &config)
+            .expect_err("refused")
+            .to_string()
+    };
+    for (name, change) in [
+        (
+            "sonar.miss",
+            &(|p: &mut Parameters| p.sonar.miss = 0.0) as &dyn Fn(&mut Parameters),
+        ),
+        ("sonar.false_echo", &|p| p.sonar.false_echo = f32::NAN),
+        ("sonar.false_range", &|p| p.sonar.false_range = 0.1),
+        ("camera.detection", &|p| p.camera.detection = 1.0),
+        ("camera.false_alarm", &|p| p.camera.false_alarm = -0.1),
+        ("newcomer", &|p| p.newcomer = 0.0),
+        ("appear", &|p| p.appear = 0.6),
+        ("vanish", &|p| p.vanish = f32::INFINITY),
+        ("floor", &|p| p.floor = 0.2),
+        ("sonar_period", &|p| p.sonar_period = 0),
+        ("vision_period", &|p| p.vision_period = 9_000),
+        ("control_period", &|p| p.control_period = 1),
+        ("loss of action 1 in state 0 is NaN", &|p| {
+            p.far_loss[1][0] = f32::NAN
+        }),
+    ] {
+        let message = refused(change);
+        assert!(message.contains(name), "{message:?} does not name {name}");
+    }
+    let message = refused(&|p| p.near_loss[2] = [6.5, 10.0]);
+    assert!(
+        message.contains("action 2 is dominated: action 1"),
+        "{message}"
+    );
+    assert!(matches!(
+        Settings::new(
+            Parameters {
+                near_loss: [[40.0, 0.0], [6.0, 5.0], [7.0, 10.0]],
+                ..Parameters::USUAL
+            },
+            &config,
+        ),
+        Err(BadSettings::Loss(BadLoss::Dominated(Dominated {
+            action: 2,
+            by: 1
+        })))
+    ));
+    let same = |far: f32, near: f32| {
+        let table = LossTable::TABLE_2;
+        DistanceLoss::with_dominated(table, metres(far), table, metres(near))
+    };
+    assert!(same(1.0, 0.5).is_ok());
+    assert!(matches!(same(0.5, 0.5), Err(BadLoss::Distance(_))));
+    assert!(Belief::<2>::even().floored(0.6).is_err());
+    assert!(Belief::<2>::even().floored(f32::NAN).is_err());
+}
+
+/// The three things that a sonar can say, in the rates of its model.
+#[test]
+fn sonars_hear_as_modelled() {
+    let sonar = SonarModel {
+        miss: 0.2,
+        false_echo: 0.1,
+        false_range: 2.0,
+    };
+    let [there, chance] = sonar.likelihood(Hearing::There, 0.2);
+    assert!((chance - 0.02).abs() < 1e-6 && (there - (0.72 + 0.02)).abs() < 1e-6);
+    assert_eq!(sonar.likelihood(Hearing::Past, 0.2), [0.2, 0.9]);
+    for hearing in [Hearing::Beside, Hearing::Nothing] {
+        assert_eq!(sonar.likelihood(hearing, 0.2), [1.0, 1.0]);
+    }
+}
+
+// --------------------------------------------------------------------- the law
+
+/// Advises what it is told to, and notes what it is shown.
+#[derive(Clone, Debug)]
+struct Told<const N: usize> {
+    advice: Advice,
+    shown: Option<View<N>>,
+}
+
+impl<const N: usize> Law<N> for Told<N> {
+    fn advise(&mut self, view: &View<N>) -> Advice {
+        self.shown = Some(*view);
+        self.advice
+    }
+
+    fn mode(&self) -> &'static str {
+        "told"
+    }
+}
+
+const AHEAD: Advice = Advice {
+    speed: 0.3,
+    turn_rate: 0.1,
+};
+
+fn deciding<const N: usize>(advice: Advice) -> (Decide<Told<N>, N>, Config) {
+    let (config, ring) = pioneer_with::<N>();
+    let settings = Settings::usual(&config).expect("usual");
+    let told = Told {
+        advice,
+        shown: None,
+    };
+    (Decide::new(told, config, ring, settings), config)
+}
+
+proptest! {
+    #![proptest_config(common::cases(300))]
+
+    /// Any views one after the other, with pauses and readings that go stale.
+    //= decide.INV-13
+    //= decide.INV-14
+    //= decide.INV-15
+    #[test]
+    fn the_law_round_a_law(
+        views in prop::collection::vec((view::<3>(), 0..400_u64, 0..4_u8), 1..20),
+        speed in any_f32(), turn_rate in any_f32(),
+    ) {
+        let advice = Advice { speed, turn_rate };
+        let (mut decide, _) = deciding::<3>(advice);
+        let control = Parameters::USUAL.control_period;
+        let (mut now, mut evidence) = (0, None);
+        for (mut view, pause, stale) in views {
+            now += pause;
+            view.now = Instant(now);
+            if stale == 0 {
+                view.sonar = [SonarReading::Stale; 3];
+            }
+            let given = decide.advise(&view);
+            let verdict = *decide.verdict();
+            let stop = verdict.response == Response::Stop;
+            let bits = [given.speed, given.turn_rate];
+            prop_assert!(law::never_into_motion(stop, [speed, turn_rate], bits));
+            let shown = decide.law().shown.expect("the law was asked");
+            let without = |view: View<3>| View { obstacle: None, ..view };
+            prop_assert!(law::only_the_obstacle_differs(&without(view), &without(shown)));
+            if stale != 0 && !view.sonar.iter().all(|reading| {
+                matches!(reading, SonarReading::Stale | SonarReading::Invalid)
+            }) {
+                // There may be evidence: whether it is new is the law's business.
+                evidence = evidence.max(Some(now));
+            }
+            let silent = evidence.map_or(u64::MAX, |at| now - at);
+            prop_assert!(law::blind_is_stop(silent, control, stop));
+        }
+    }
+
+    /// S1's law with the decision round it advises within the limits, and nothing with a guard.
+    //= decide.INV-13
+    #[test]
+    fn advice_stays_within_limits(views in prop::collection::vec(view::<3>(), 1..20)) {
+        let (config, ring) = pioneer_with::<3>();
+        let settings = Settings::usual(&config).expect("usual");
+        let mut decide = Decide::new(Avoid::new(config), config, ring, settings);
+        for (tick, view) in views.into_iter().enumerate() {
+            let guard = (tick % 3 == 2).then_some(StopReason::Operator);
+            let view = View { now: Instant(100 * tick as u64), guard, ..view };
+            let advice = decide.advise(&view);
+            prop_assert!(motion::advice_in_range(
+                advice.speed, advice.turn_rate, config.speed_max, config.turn_rate_max
+            ));
+            prop_assert!(motion::stop_dominates(view.guard.is_some(), advice.speed == 0.0));
+            prop_assert!(!Law::<3>::mode(&decide).is_empty());
+            let stop = decide.verdict().response == Response::Stop;
+            let given = [advice.speed, advice.turn_rate];
+            prop_assert!(!stop || law::never_into_motion(true, [0.0, given[1]], given));
+        }
+    }
+}
+
+/// A view of three sonars, the middle one of which looks ahead and reads this.
+fn looking_at(reading: SonarReading, t: u64) -> View<3> {
+    let (config, ring) = pioneer_with::<3>();
+    let silent = SonarReading::NoEcho(metres(config.sonar_range_max));
+    let free = common::in_order(1_000, [5.0; 3]);
+    let view = Memory::default().update(&free, [5.0, 0.0].into(), &ring, &config);
+    let mut view = view.expect("odometry");
+    view.now = Instant(t);
+    view.sonar = [silent; 3];
+    view.sonar[ahead()] = reading;
+    view.obstacle = None;
+    view.guard = None;
+    view
+}
+
+/// The sonar that looks most nearly straight ahead.
+fn ahead() -> usize {
+    let (_, ring) = pioneer_with::<3>();
+    let off = |i: usize| ring.sonars()[i].heading.get().abs();
+    (0..3)
+        .min_by(|i, j| off(*i).total_cmp(&off(*j)))
+        .expect("a sonar")
+}
+
+/// One false echo is not shown to the law; a thing is, from its second look on, and is held when it is
+/// not heard for a moment.
+#[test]
+fn one_echo_is_doubted_and_two_are_believed() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    let silent = SonarReading::NoEcho(metres(5.0));
+    let echo = SonarReading::Echo(metres(1.0));
+    let mut shown = |reading, t| {
+        decide.advise(&looking_at(reading, t));
+        let law = decide.law().shown.expect("the law was asked");
+        (law.obstacle.is_some(), *decide.verdict())
+    };
+    assert!(!shown(silent, 0).0);
+    let (seen, verdict) = shown(echo, 100);
+    assert!(
+        !seen && verdict.doubted.is_some_and(|p| p < 0.2),
+        "{verdict:?}"
+    );
+    assert!(!shown(silent, 200).0);
+    assert!(!shown(silent, 300).0);
+    assert!(!shown(echo, 1_000).0, "the next false echo");
+    let (seen, verdict) = shown(SonarReading::Echo(metres(0.98)), 1_100);
+    assert!(
+        seen && verdict.response == Response::Maneuver,
+        "{verdict:?}"
+    );
+    assert!(shown(silent, 1_200).0, "held");
+}
+
+/// A thing that stands close ahead is stopped for; turning stays allowed, and once the robot looks
+/// past it the law's advice is passed on.
+#[test]
+fn what_is_close_ahead_is_stopped_for() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    let mut last = Advice::REST;
+    for tick in 0..10 {
+        let range = metres(0.45 + 0.001 * (tick % 2) as f32);
+        last = decide.advise(&looking_at(SonarReading::Echo(range), 100 * tick));
+    }
+    assert_eq!(decide.verdict().response, Response::Stop);
+    assert_eq!((last.speed, last.turn_rate), (0.0, 0.1));
+    assert_eq!(Law::<3>::mode(&decide), "decided to stop");
+    let mut away = looking_at(SonarReading::NoEcho(metres(5.0)), 1_000);
+    away.pose.heading = Angle::radians(1.5).expect("an angle");
+    let advice = decide.advise(&away);
+    assert_eq!(advice.speed, AHEAD.speed, "{:?}", decide.verdict());
+}
+
+/// A reading that stands is the same evidence until a sonar period has passed.
+#[test]
+fn a_reading_that_stands_counts_once() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    let echo = SonarReading::Echo(metres(1.0));
+    for t in [0, 20, 40, 60, 80] {
+        decide.advise(&looking_at(echo, t));
+        let shown = decide.law().shown.expect("the law was asked");
+        assert!(shown.obstacle.is_none(), "at {t} ms");
+    }
+    decide.advise(&looking_at(echo, 100));
+    let shown = decide.law().shown.expect("the law was asked");
+    assert!(shown.obstacle.is_some());
+}
+
+/// A camera that detects somebody where a first echo came from settles it; a look that is too old, or
+/// elsewhere, does not.
+#[test]
+fn a_camera_confirms() {
+    let echo = SonarReading::Echo(metres(0.9));
+    let bearing = |radians| Some(Angle::radians(radians).expect("an angle"));
+    let (_, ring) = pioneer_with::<3>();
+    let at = ring.sonars()[ahead()].heading.get();
+    for (detected, taken_at, believed) in [
+        (bearing(at), 900, true),
+        (bearing(at), 400, false),
+        (bearing(at + 1.0), 900, false),
+        (None, 900, false),
+    ] {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        decide.advise(&looking_at(SonarReading::NoEcho(metres(5.0)), 900));
+        decide.see(CameraLook {
+            detected,
+            taken_at: Instant(taken_at),
+        });
+        decide.advise(&looking_at(echo, 1_000));
+        let shown = decide.law().shown.expect("the law was asked");
+        assert_eq!(
+            shown.obstacle.is_some(),
+            believed,
+            "{detected:?} at {taken_at}"
+        );
+    }
+}
+
+/// More places than are kept in mind: the nearest are, and what is not is taken as it is.
+#[test]
+fn many_places() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    for tick in 0..60_u64 {
+        let mut view = looking_at(SonarReading::Echo(metres(1.5)), 100 * tick);
+        view.pose.position = Vector2::new(0.0, 0.5 * tick as f32);
+        decide.advise(&view);
+    }
+    assert!(decide.verdict().response != Response::Stop);
+}
+
+/// A clock that goes back, and one that leaps: no panic, no belief out of nowhere.
+#[test]
+fn clocks_that_are_wrong() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    for t in [0, 100, 50, 10, u64::MAX, 0, 1_000_000] {
+        let advice = decide.advise(&looking_at(SonarReading::Echo(metres(1.0)), t));
+        assert!(advice.speed <= AHEAD.speed);
+    }
+}
