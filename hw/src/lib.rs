@@ -7,8 +7,8 @@
 
 pub mod base;
 pub mod config;
-pub mod decide;
 pub mod coverage;
+pub mod decide;
 pub mod demo;
 pub mod draw;
 pub mod drive;

@@ -14,8 +14,8 @@
 
 pub mod arcos;
 pub mod avoid;
-pub mod decide;
 pub mod coverage;
+pub mod decide;
 pub mod edge;
 pub mod failsafe;
 pub mod kinematics;
