@@ -16,6 +16,8 @@ use sidestep::arcos::{self, HostCommand, Receiver, SonarReadings, StandardInform
 use sidestep::avoid::Avoid;
 use sidestep::config::Config;
 use sidestep::controller::Controller;
+use sidestep::decide::{self, Decide};
+use sidestep::edge::{self, Edge, EdgeConfig, PlannedEdge};
 use sidestep::escape::Escape;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, SonarSample};
@@ -97,6 +99,23 @@ const CASES: &[Case] = &[
     case("law: escape round avoid", || {
         let config = config();
         law(Escape::new(Avoid::new(config), config, ring(&config)))
+    }),
+    case("law: decide round avoid (S2)", || {
+        let config = config();
+        let settings = decide::Settings::new(decide::Parameters::USUAL, &config);
+        let settings = settings.expect("the defaults fit the preset");
+        law(Decide::new(
+            Avoid::new(config),
+            config,
+            ring(&config),
+            settings,
+        ))
+    }),
+    case("law: edge (S4)", || {
+        let config = config();
+        let edge = EdgeConfig::new(edge::PAPER).expect("the paper's values are good");
+        let way = PlannedEdge::new(Vector2::new(0.0, 0.0), GOAL).expect("an edge");
+        law(Edge::new(config, edge, ring(&config), [way]).expect("a route"))
     }),
     case("shield: 16 sonars", shield),
     case("controller: view, avoid, shield", controller),
