@@ -34,3 +34,10 @@ pub fn any_atan2(_y: f32, _x: f32) -> f32 {
     kani::assume(contract::atan2(result));
     result
 }
+
+/// Any natural logarithm: math.INV-5.
+pub fn any_ln(x: f32) -> f32 {
+    let result = kani::any();
+    kani::assume(contract::ln(x, result));
+    result
+}

@@ -25,14 +25,14 @@ pub struct Field {
 }
 
 /// The unit is that of a count.
-const fn is_count(unit: &str) -> bool {
+pub(crate) const fn is_count(unit: &str) -> bool {
     // Strings cannot be compared in a constant: no other unit begins like this one.
     matches!(unit.as_bytes(), [b's', b'a', ..])
 }
 
 macro_rules! parameters {
     ($($name:ident: $unit:literal, $min:literal, $max:literal, $meaning:literal;)+) => {
-        /// Every parameter of law, view and shield, in SI units.
+        /// Every parameter, in SI units.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             $(#[doc = $meaning] #[doc = ""] #[doc = concat!("Unit ", $unit, ", ", $min, " to ", $max, ".")]
@@ -60,6 +60,8 @@ macro_rules! parameters {
         }
     };
 }
+
+pub(crate) use parameters;
 
 parameters! {
     safe_distance: "m", 0.1, 10.0,

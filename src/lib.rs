@@ -25,6 +25,8 @@ pub mod decide;
 pub mod edge;
 pub mod escape;
 pub mod failsafe;
+pub mod gesture;
+pub mod interact;
 pub mod kinematics;
 pub mod laser;
 pub mod law;
@@ -37,6 +39,7 @@ pub mod ring;
 pub mod shield;
 pub mod stream;
 pub mod track;
+pub mod valley;
 pub mod view;
 pub mod wall;
 

@@ -60,6 +60,20 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     }
 }
 
+/// Natural logarithm.
+///
+/// Contract `math.INV-5`: for finite x ≥ 1 the result is in [0, x − 1]; for every other x, NaN too,
+/// it is 0.
+//= math.INV-5
+#[must_use]
+pub fn ln(x: f32) -> f32 {
+    if x >= 1.0 && x.is_finite() {
+        libm::logf(x)
+    } else {
+        0.0
+    }
+}
+
 /// Length of a vector.
 #[must_use]
 pub fn norm(vector: nalgebra::Vector2<f32>) -> f32 {

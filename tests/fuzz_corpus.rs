@@ -22,7 +22,10 @@ const TARGETS: &[(&str, Target)] = &[
     ("decide", targets::decide::run),
     ("edge", targets::edge::run),
     ("laser", targets::laser::run),
+    ("gesture", targets::gesture::run),
+    ("interact", targets::interact::run),
     ("shield", targets::shield::run),
+    ("valley", targets::valley::run),
 ];
 
 /// Numbers that are the same in every run (SplitMix64).

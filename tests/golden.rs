@@ -13,6 +13,7 @@ use sidestep::kinematics::{DifferentialDrive, WheelRates, velocity};
 use sidestep::observation::Sighting;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length, Speed};
+use sidestep::valley::{Geometry, Heading, Person, Scene};
 use sidestep::view::Pose;
 use sidestep_spec as spec;
 use std::collections::BTreeMap;
@@ -123,9 +124,124 @@ fn sighting(i: &Input) -> Sighting {
     }
 }
 
+/// The sensor of S3, with the robot's radius and the safety distance (m).
+fn kinect(robot_radius: f32, safety_distance: f32) -> Geometry {
+    Geometry::new(robot_radius, safety_distance, 35_f32.to_radians()).expect("a geometry")
+}
+
+fn s3_geometry(i: &Input) -> spec::valley::Geometry {
+    spec::valley::Geometry {
+        robot_radius: i.number("r_r"),
+        safety_distance: i.number("d"),
+        view_half_angle_deg: 35.0,
+    }
+}
+
+/// S3.E1 to E24: every region of a scene. Which is accepted is judged for the direction that the
+/// equations give; the core may find another in the same region (spec/valley.md, S3.E19).
+fn valley_regions(printed: bool, i: &Input) -> Computed {
+    let geometry = s3_geometry(i);
+    let people: Vec<spec::valley::Person> = i.0["persons_X_Zrange_rp"]
+        .as_array()
+        .expect("people")
+        .iter()
+        .map(|person| {
+            let number = |at: usize| person[at].as_f64().expect("a number");
+            spec::valley::Person {
+                lateral: number(0),
+                range: number(1),
+                radius: number(2),
+            }
+        })
+        .collect();
+    let core_people: Vec<Person> = people
+        .iter()
+        .map(|p| Person::new(p.lateral as f32, p.range as f32, p.radius as f32).expect("a person"))
+        .collect();
+    let core_geometry = kinect(
+        geometry.robot_radius as f32,
+        geometry.safety_distance as f32,
+    );
+    let scene = Scene::new(&core_people).expect("at most six");
+    let (mut reference, mut core) = (Vec::new(), Vec::new());
+    for region in spec::valley::regions(&people, &geometry, printed) {
+        let gap = region.gap(&people);
+        let kind = match region.index {
+            0 => "left".to_owned(),
+            index if index == people.len() => "right".to_owned(),
+            index => format!("mid{index}"),
+        };
+        let mut fields = serde_json::json!({
+            "kind": kind,
+            "R_av": region.available,
+            "R_min": region.least,
+            "ok": region.wide_enough(),
+            "x_ca": region.lateral,
+            "Z_ca": region.range,
+            "theta_ca_deg": region.heading_deg,
+            "d_ca": region.length,
+            "theta_r_deg": region.width_deg,
+            "centreline_gap_m": gap,
+        });
+        let found = core_geometry
+            .region(&scene, region.index)
+            .expect("a region");
+        let mut found_fields = serde_json::json!({
+            "R_av": found.available,
+            "x_ca": found.lateral,
+            "Z_ca": found.range,
+            "theta_r_deg": f64::from(found.width).to_degrees(),
+        });
+        if !printed {
+            // To the last bit the path beside a person is exactly as far away as it must be.
+            let needed = geometry.robot_radius + geometry.safety_distance / 2.0;
+            let clear = gap >= needed - 1e-12;
+            let in_view = region.heading_deg.abs() <= geometry.view_half_angle_deg;
+            let accepted = region.wide_enough() && clear && in_view;
+            fields["path_clear"] = clear.into();
+            fields["heading_in_fov"] = in_view.into();
+            fields["accepted"] = accepted.into();
+            found_fields["R_min"] = found.least.into();
+            // A width that is exactly what is needed, to the last bit, is decided by rounding.
+            if (region.available - region.least).abs() > 1e-6 {
+                found_fields["ok"] = found.is_wide_enough().into();
+            }
+            let valley = core_geometry.valley(&scene, region.index);
+            if accepted || !region.wide_enough() {
+                found_fields["accepted"] = valley.is_some().into();
+            }
+            if let Some(valley) = valley.filter(|_| accepted) {
+                let heading = f64::from(valley.heading.angle()).to_degrees();
+                found_fields["theta_ca_deg"] = heading.into();
+                found_fields["d_ca"] = valley.length.into();
+            }
+        }
+        reference.push(fields);
+        core.push(found_fields);
+    }
+    Computed {
+        reference: vec![("regions", Value::from(reference))],
+        core: Some(vec![("regions", Value::from(core))]),
+    }
+}
+
 /// What the reference and the core make of a case; `None` if its equation is not here yet.
 fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
     let computed = match (equation, variant) {
+        ("S3.T1", "printed") => {
+            let (average, success) = spec::gesture::t1(
+                i.number("total_error"),
+                i.number("folds"),
+                i.number("samples"),
+            );
+            Computed {
+                reference: vec![
+                    ("average_error", number(average)),
+                    ("success_pct", number(success)),
+                ],
+                core: None,
+            }
+        }
         ("S1.E1", "lit") => {
             let (heading, camera) = (i.number("theta_R_deg"), i.number("theta_cam_deg"));
             let core = avoid::obstacle_robot_angle(
@@ -647,6 +763,136 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
             }
         }
         (equation, variant) if equation.starts_with("S4.") => return edge(equation, variant, i),
+        //= valley.INV-1
+        //= valley.INV-2
+        //= valley.INV-6
+        ("S3.E1-24", variant) => valley_regions(variant == "lit", i),
+        ("S3.E3-5", "lit") => {
+            let (lateral, range) = (i.number("X"), i.number("Z_range"));
+            let person = Person::new(lateral as f32, range as f32, 0.2).expect("a person");
+            let bearing = f64::from(person.bearing()).to_degrees();
+            Computed {
+                reference: vec![
+                    ("delta_deg", number(spec::valley::e3(lateral, range))),
+                    ("Z_temp", number(spec::valley::e4(lateral, range))),
+                    ("X_term", number(spec::valley::e5(lateral, range, 35.0))),
+                ],
+                core: Some(vec![
+                    ("delta_deg", number(bearing)),
+                    ("Z_temp", radians(person.depth())),
+                    ("X_term", radians(kinect(0.25, 0.3).edge(&person))),
+                ]),
+            }
+        }
+        ("S3.E10", "rec") => {
+            let (left, right) = (i.number("x_i"), i.number("x_i1"));
+            let people = [left, right].map(|x| Person::new(x as f32, 5.0, 0.2).expect("a person"));
+            let scene = Scene::new(&people).expect("two people");
+            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
+            let half = spec::valley::e10_printed(left, right);
+            Computed {
+                reference: vec![
+                    ("x_ca", number(spec::valley::e10(left, right))),
+                    ("paper_literal_half_width", number(half)),
+                ],
+                core: Some(vec![("x_ca", radians(region.lateral))]),
+            }
+        }
+        ("S3.E14-16", "rec") => {
+            let (lateral, depth) = (i.number("x_ca"), i.number("Z_temp"));
+            let range = spec::valley::e15(lateral, depth);
+            let length = spec::valley::e16_printed(&s3_geometry(i), range, i.number("r_f"));
+            // Two people as deep as that, with the middle between them.
+            let people = [-0.5, 0.5].map(|off| {
+                Person::at(depth as f32, -(lateral as f32 + off), 0.2).expect("a person")
+            });
+            let scene = Scene::new(&people).expect("two people");
+            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
+            let heading = f64::from(Heading::new(region.sine).angle()).to_degrees();
+            Computed {
+                reference: vec![
+                    ("theta_ca_deg", number(spec::valley::e14(lateral, depth))),
+                    ("Z_ca", number(range)),
+                    ("d_ca", number(length)),
+                ],
+                core: Some(vec![
+                    ("theta_ca_deg", number(heading)),
+                    ("Z_ca", radians(region.range)),
+                ]),
+            }
+        }
+        ("S3.E19-20", "rec") => {
+            let (lateral, range) = (i.number("x_ca"), i.number("Z_ca"));
+            let geometry = spec::valley::Geometry {
+                robot_radius: i.number("r_r"),
+                safety_distance: 0.0,
+                view_half_angle_deg: 35.0,
+            };
+            let heading = spec::valley::e19(lateral, range);
+            let length = spec::valley::e20_printed(&geometry, lateral, range, i.number("r_p"));
+            Computed {
+                reference: vec![
+                    ("theta_ca_deg", number(heading)),
+                    ("d_ca_paper", number(length)),
+                    ("valid", Value::from(heading.is_finite())),
+                ],
+                core: None,
+            }
+        }
+        //= valley.INV-4
+        ("S3.E25" | "S3.E26", variant) => {
+            let (width, whole) = (i.number("theta_r_deg"), i.number("theta_max_deg"));
+            let [greatest, printed, exact, derived] = if equation == "S3.E25" {
+                ["v_max", "v_printed", "v_exact", "v"]
+            } else {
+                [
+                    "omega_max",
+                    "omega_printed",
+                    "omega_exact",
+                    "omega_magnitude",
+                ]
+            };
+            let share = if variant == "rec" {
+                spec::valley::e25(width, whole)
+            } else {
+                spec::valley::e25_printed(width, whole)
+            };
+            let core = f64::from(kinect(0.25, 0.3).share((width as f32).to_radians()));
+            let [share, core] = [share, core].map(|share| number(share * i.number(greatest)));
+            let names = match variant {
+                "printed" => vec![printed, exact],
+                _ => vec![derived],
+            };
+            let with = |value: &Value| names.iter().map(|name| (*name, value.clone())).collect();
+            Computed {
+                reference: with(&share),
+                core: Some(with(&core)),
+            }
+        }
+        ("S3.T4T5.time", "printed") => {
+            let [distance, heading, speed, turn_rate] =
+                ["d_m", "heading_deg", "v", "omega"].map(|name| i.number(name));
+            let time = number(spec::valley::time(distance, heading, speed, turn_rate));
+            Computed {
+                reference: vec![("time_printed_s", time.clone()), ("time_identity_s", time)],
+                core: None,
+            }
+        }
+        //= valley.INV-8
+        ("S3.select", "printed") => {
+            let candidates: Vec<f64> = i.0["candidates_deg"]
+                .as_array()
+                .expect("candidates")
+                .iter()
+                .map(|candidate| candidate.as_f64().expect("a heading"))
+                .collect();
+            let aim = i.0["waypoint_deg"].as_f64().unwrap_or(0.0);
+            let nearest = spec::valley::nearest(&candidates, aim);
+            Computed {
+                reference: vec![("heading_deg", nearest.map_or(Value::Null, number))],
+                core: None,
+            }
+        }
         _ => return None,
     };
     Some(computed)
@@ -669,16 +915,6 @@ fn probabilities(belief: decide::Belief<2>) -> Vec<f64> {
 
 fn table(rows: &[[f64; 2]]) -> Vec<Vec<f64>> {
     rows.iter().map(|row| row.to_vec()).collect()
-}
-
-/// What is compared with what: arrays of the same length element by element.
-fn pairs<'a>(found: &'a Value, expected: &'a Value) -> Vec<(&'a Value, &'a Value)> {
-    match (found.as_array(), expected.as_array()) {
-        (Some(found), Some(expected)) if found.len() == expected.len() => {
-            found.iter().zip(expected).collect()
-        }
-        _ => vec![(found, expected)],
-    }
 }
 
 /// A result equals what is expected, numbers within `tolerance`; angles on the circle.
@@ -862,10 +1098,35 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
     Some(computed)
 }
 
+/// The values inside lists and objects, by their names and places: `regions.0.R_av`.
+fn flatten(prefix: &str, value: &Value) -> BTreeMap<String, Value> {
+    let inside: Vec<(String, &Value)> = match value {
+        Value::Object(fields) => fields
+            .iter()
+            .map(|(key, value)| (key.clone(), value))
+            .collect(),
+        Value::Array(values) => {
+            let places = values.iter().enumerate();
+            places.map(|(i, value)| (i.to_string(), value)).collect()
+        }
+        value => return BTreeMap::from([(prefix.to_owned(), value.clone())]),
+    };
+    let dot = if prefix.is_empty() { "" } else { "." };
+    inside
+        .into_iter()
+        .flat_map(|(key, value)| flatten(&format!("{prefix}{dot}{key}"), value))
+        .collect()
+}
+
 /// The outputs that differ from what is expected; every output the core gives is looked at, and
 /// every expected output must be given by the reference.
 fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
-    let expected = case["out"].as_object().expect("outputs");
+    // Lists of results are compared one by one, by name.
+    let expected = flatten("", &case["out"]);
+    let outputs: BTreeMap<String, Value> = outputs
+        .iter()
+        .flat_map(|(name, value)| flatten(name, value))
+        .collect();
     let tol = case["tol"].as_f64().unwrap_or(0.0);
     let largest_angle = outputs
         .iter()
@@ -873,21 +1134,11 @@ fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
         .filter_map(|(_, value)| value.as_f64())
         .fold(0.0, |largest: f64, angle| largest.max(angle.abs()));
     let mut wrong = Vec::new();
-    let mut compared = Vec::new();
-    for (name, value) in outputs {
-        match expected.get(*name) {
-            Some(expected) => {
-                let pairs = pairs(value, expected);
-                compared.extend(
-                    pairs
-                        .into_iter()
-                        .map(|(value, expected)| (name, value, expected)),
-                );
-            }
-            None => wrong.push(format!("{name} is not expected")),
-        }
-    }
-    for (name, value, expected) in compared {
+    for (name, value) in &outputs {
+        let Some(expected) = expected.get(name) else {
+            wrong.push(format!("{name} is not expected"));
+            continue;
+        };
         let scale = if name.ends_with("_rad") {
             largest_angle
         } else {
@@ -913,7 +1164,7 @@ fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
         }
     }
     for name in expected.keys() {
-        if !core && !outputs.iter().any(|(given, _)| given == name) {
+        if !core && !outputs.contains_key(name) {
             wrong.push(format!("{name} is not computed"));
         }
     }

@@ -78,6 +78,15 @@ fn functions_are_all_there() {
     assert_eq!(unary, checked);
 }
 
+//= math.INV-5
+#[test]
+fn logarithm_keeps_its_contract() {
+    for x in inputs() {
+        let result = math::ln(x);
+        assert!(contract::ln(x, result), "ln({x:e}) = {result:e}");
+    }
+}
+
 /// A coarser grid in each coordinate, a prime apart, and every pair of corners.
 //= math.INV-4
 #[test]

@@ -136,10 +136,16 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         losses_at_a_distance_are_between;
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
         blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
+    gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
+        unlikeness_is_finite, winner_beats_all,
+        outputs_spell_the_class, gesture_counts_after_enough_frames;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
+    interact: machine_keeps_its_promises, advice_is_within_limits;
+    valley: admitted_way_is_clear, accepted_valley_is_admitted, share_is_a_share,
+        order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
     shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
         rest_does_not_overflow, plan_covers_command, plan_covers_motion,

@@ -30,7 +30,7 @@ pub struct Function {
 }
 
 /// All of them.
-pub const FUNCTIONS: [Function; 3] = [
+pub const FUNCTIONS: [Function; 4] = [
     //= math.INV-1 (every input)
     Function {
         name: "sin",
@@ -70,6 +70,20 @@ pub const FUNCTIONS: [Function; 3] = [
         nearness_is: "greatest result − max(1, x) (at most 0)",
         exact: |x| (x >= 0.0 && x.is_finite()).then(|| x.sqrt()),
         budget: 0.5,
+    },
+    //= math.INV-5 (every input)
+    Function {
+        name: "ln",
+        invariant: "math.INV-5",
+        run: math::ln,
+        kept: contract::ln,
+        nearness: |x, result| {
+            let within = x >= 1.0 && x.is_finite();
+            within.then(|| f64::from(result) - f64::from(x - 1.0))
+        },
+        nearness_is: "greatest result − (x − 1) (at most 0)",
+        exact: |x| (x >= 1.0 && x.is_finite()).then(|| x.ln()),
+        budget: 1.0,
     },
 ];
 

@@ -75,6 +75,12 @@ pub struct RobotConfig {
 #[derive(Debug)]
 pub struct ConfigError(String);
 
+impl ConfigError {
+    pub(crate) const fn new(message: String) -> Self {
+        Self(message)
+    }
+}
+
 impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
@@ -116,7 +122,7 @@ fn units_of(field: &Field) -> &'static [(&'static str, f64)] {
 }
 
 /// A parameter's value as text: the shortest that reads back as the same value.
-fn text_of(field: &Field, value: f32) -> String {
+pub(crate) fn text_of(field: &Field, value: f32) -> String {
     match units_of(field).first() {
         None => format!("{value}"),
         Some((unit, factor)) => {
@@ -273,7 +279,7 @@ fn wrong_word(field: &str, value: &toml::Value, allowed: &str) -> String {
 }
 
 /// A parameter's value in its own unit, from text such as `"40 cm/s"` or, for counts, a number.
-fn quantity(field: &Field, value: &toml::Value) -> Result<f32, String> {
+pub(crate) fn quantity(field: &Field, value: &toml::Value) -> Result<f32, String> {
     let units = units_of(field);
     let names: Vec<&str> = units.iter().map(|(unit, _)| *unit).collect();
     if units.is_empty() {

@@ -6,6 +6,7 @@ use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw};
 use crate::drive::{self, Clock, Ending, Signals, Status};
 use crate::emulate::{Line, serve};
+use crate::encounter;
 use crate::log::Halt;
 use crate::pilot::{Pilot, Tally, USUAL_LAW, settings, usual_law};
 use crate::transport;
@@ -22,6 +23,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the set of S1's Figure 12 is called.
 pub const FIG12: &str = "fig12";
+
+/// What the stories of S3's Figures 8 and 9 are called.
+pub const VALLEY: &str = "valley";
 
 /// What is demonstrated, and how.
 #[derive(Clone, Debug)]
@@ -148,6 +152,45 @@ pub fn goal_from_start(scenario: &Scenario) -> [f32; 2] {
         (cos * offset.x + sin * offset.y) as f32,
         (cos * offset.y - sin * offset.x) as f32,
     ]
+}
+
+/// Tells S3's stories in virtual time: the robot meets people, speaks, waits, is told by a master or
+/// chooses for itself, and passes. Leaves a folder with a picture and what happened for each, and
+/// gives the number of contacts while the robot moved.
+///
+/// # Errors
+/// If a story does not make a simulation, or the folder cannot be used.
+pub fn valley(options: &Options, status: &mut Status) -> Result<u32, Box<dyn Error>> {
+    let mut contacts = 0;
+    for name in encounter::STORIES {
+        let mut story = encounter::story(name, options.knobs.seed)?;
+        story.scenario.sonar_faults = options.knobs.sonar_faults;
+        let folder = run_folder(&options.out, &format!("valley-{name}"))?;
+        status.keep(&format!("== {name}: {}", story.scenario.description));
+        let met = encounter::run(&story, &options.config, sidestep::interact::USUAL, None)?;
+        let mut text = String::new();
+        for happening in &met.happenings {
+            let seconds = happening.t as f64 / 1000.0;
+            let _ = writeln!(text, "{seconds:7.1} s  {}", happening.text());
+        }
+        let outcome = &met.report.outcome;
+        let least = outcome.minimum_clearance_while_driving.people;
+        let touched = met.report.contacts.len() as u32;
+        let _ = writeln!(
+            text,
+            "goal reached: {}; contacts while moving: {touched}; least clearance of people while \
+             driving: {least:.2} m; stops of the shield: {}",
+            if met.report.arrived { "yes" } else { "no" },
+            met.stops.len()
+        );
+        status.keep(text.trim_end());
+        fs::write(folder.join("summary.txt"), &text)?;
+        let picture = folder.join("picture.svg");
+        fs::write(&picture, met.picture())?;
+        status.keep(&format!("picture: {}\n", picture.display()));
+        contacts += touched;
+    }
+    Ok(contacts)
 }
 
 /// A folder that did not exist, named after a scenario and numbered.

@@ -50,6 +50,7 @@ const INTERVAL: u64 = 3000;
 const ROBOT: &str = "#1f5fbf";
 const PERSON: &str = "#2b8a3e";
 const STOP: &str = "#d6336c";
+const EVENT: &str = "#7048e8";
 const WALL: &str = "#495057";
 const PLAN: &str = "#e8590c";
 
@@ -68,12 +69,22 @@ pub(crate) fn round(x: f64) -> f64 {
 /// Draws the picture as SVG.
 #[must_use]
 pub fn draw(picture: &Picture) -> String {
-    draw_planned(picture, &Plan::default())
+    compose(picture, &Plan::default(), &[])
 }
 
 /// Draws the picture and a plan as SVG.
 #[must_use]
 pub fn draw_planned(picture: &Picture, plan: &Plan) -> String {
+    compose(picture, plan, &[])
+}
+
+/// Draws the picture as SVG, with what was said and done marked where the robot was, and listed.
+#[must_use]
+pub fn draw_with_events(picture: &Picture, events: &[Stop]) -> String {
+    compose(picture, &Plan::default(), events)
+}
+
+fn compose(picture: &Picture, plan: &Plan, events: &[Stop]) -> String {
     // What is to be seen: the robot's way, the goal, and some room around.
     let mut low = picture.goal;
     let mut high = picture.goal;
@@ -88,7 +99,8 @@ pub fn draw_planned(picture: &Picture, plan: &Plan) -> String {
     let margin = Vector::new(1.6, 1.6);
     let (low, high) = (low - margin, high + margin);
     let header = 34.0 + 18.0 * picture.notes.len() as f64;
-    let legend = 22.0 + 16.0 * picture.stops.len() as f64;
+    let rows = picture.stops.len() + events.len() + usize::from(!events.is_empty());
+    let legend = 22.0 + 16.0 * rows as f64;
     let width = ((high.x - low.x) * SCALE).max(640.0);
     let height = (high.y - low.y) * SCALE;
     let at = |p: Point| {
@@ -132,40 +144,41 @@ pub fn draw_planned(picture: &Picture, plan: &Plan) -> String {
         .add(cross(x, y, 9.0, "#e8590c"))
         .add(text(x + 12.0, y + 4.0, 13.0, "goal"));
 
-    let mut list = Group::new().add(text(
-        8.0,
-        header + height + 16.0,
-        13.0,
-        if picture.stops.is_empty() {
-            "no stops"
-        } else {
-            "stops, in order:"
-        },
-    ));
-    for (i, stop) in picture.stops.iter().enumerate() {
+    let first = if picture.stops.is_empty() {
+        "no stops"
+    } else {
+        "stops, in order:"
+    };
+    let mut list = Group::new().add(text(8.0, header + height + 16.0, 13.0, first));
+    let mut row = header + height + 18.0;
+    let stops = picture.stops.iter().map(|stop| (stop, STOP));
+    let events = events.iter().map(|event| (event, EVENT));
+    let (mut number, mut kind) = (0, STOP);
+    for (mark, colour) in stops.chain(events) {
+        row += 16.0;
+        if kind != colour {
+            (number, kind) = (0, colour);
+            list = list.add(text(8.0, row, 13.0, "said and done, in order:"));
+            row += 16.0;
+        }
+        number += 1;
         let here = way
             .iter()
-            .min_by_key(|(t, _)| t.abs_diff(stop.t))
+            .min_by_key(|(t, _)| t.abs_diff(mark.t))
             .map_or(picture.goal, |(_, position)| *position);
         let (x, y) = at(here);
-        let line = format!(
-            "{}. {:.1} s: {}",
-            i + 1,
-            stop.t as f64 / 1000.0,
-            stop.reason
-        );
+        // Stops above the way, the rest below it.
+        let beside = if colour == STOP { -6.0 } else { 14.0 };
+        let seconds = mark.t as f64 / 1000.0;
+        let line = format!("{number}. {seconds:.1} s: {}", mark.reason);
+        let label = text(x + 6.0, y + beside, 11.0, &number.to_string());
         scene = scene.add(
             Group::new()
                 .add(Title::new(line.clone()))
-                .add(cross(x, y, 5.0, STOP))
-                .add(text(x + 6.0, y - 6.0, 11.0, &(i + 1).to_string()).set("fill", STOP)),
+                .add(cross(x, y, 5.0, colour))
+                .add(label.set("fill", colour)),
         );
-        list = list.add(text(
-            16.0,
-            header + height + 34.0 + 16.0 * i as f64,
-            12.0,
-            &line,
-        ));
+        list = list.add(text(16.0, row, 12.0, &line).set("fill", colour));
     }
 
     let mut document = Document::new()

@@ -217,11 +217,28 @@ fn carry_out(transport: &mut dyn Transport, output: Output) -> Result<(), Transp
 /// If the port cannot be opened to begin with.
 pub fn run<L: Law<N>, const N: usize>(
     pilot: &mut Pilot<L, N>,
+    open: impl FnMut() -> Result<Box<dyn Transport>, TransportError>,
+    clock: Clock,
+    limit: Option<u64>,
+    signals: &Signals,
+    status: &mut Status,
+) -> Result<Ending, TransportError> {
+    run_attended(pilot, open, clock, limit, signals, status, |_, _| {})
+}
+
+/// The same, with something to attend to again and again, at the clock's time in ms: people whom a
+/// camera sees, what is to be said.
+///
+/// # Errors
+/// If the port cannot be opened to begin with.
+pub fn run_attended<L: Law<N>, const N: usize>(
+    pilot: &mut Pilot<L, N>,
     mut open: impl FnMut() -> Result<Box<dyn Transport>, TransportError>,
     clock: Clock,
     limit: Option<u64>,
     signals: &Signals,
     status: &mut Status,
+    mut attend: impl FnMut(&mut Pilot<L, N>, u64),
 ) -> Result<Ending, TransportError> {
     let mut port = Some(open()?);
     let mut retry_at = 0;
@@ -230,6 +247,7 @@ pub fn run<L: Law<N>, const N: usize>(
     let mut buffer = [0; 4096];
     loop {
         let now = clock.now();
+        attend(pilot, now);
         match &mut port {
             Some(transport) => {
                 let step = || -> Result<(), TransportError> {

@@ -48,6 +48,11 @@ impl Random {
     pub(crate) fn below(&mut self, end: u64) -> u64 {
         self.bits() % end.max(1)
     }
+
+    /// A number in [least, greatest).
+    pub(crate) fn between(&mut self, least: f64, greatest: f64) -> f64 {
+        least + (greatest - least) * f64::midpoint(1.0, f64::from(self.signed()))
+    }
 }
 
 /// Full speed straight ahead, whatever is there.
@@ -523,7 +528,7 @@ fn run_with<L: Law<16>>(
 }
 
 /// Somebody at one moment, as far as it matters to the shield.
-struct Seen {
+pub(crate) struct Seen {
     person: usize,
     time_ms: u64,
     /// m/s.
@@ -533,7 +538,7 @@ struct Seen {
 }
 
 /// Notes how fast people are, and who is where the shield believes that something stands still.
-fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
+pub(crate) fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
     let Some(view) = ride.host.latest().and_then(|decision| decision.view) else {
         return;
     };
@@ -569,7 +574,7 @@ fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
 const BREACH_MS: u64 = 1000;
 
 /// The class bound that was broken, if that explains every one of these contacts.
-fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
+pub(crate) fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
     let mut was: f64 = 0.0;
     for contact in contacts {
         let Body::Person(person) = contact.body else {
@@ -597,7 +602,7 @@ fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Br
 }
 
 /// What was decided last, and how things truly are.
-fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
+pub(crate) fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
     let base = ride.simulation.robot().base();
     let pose = base.pose();
     let mut line = format!(

@@ -1,6 +1,10 @@
 //! The program `sidestep`.
 
 use clap::{Parser, Subcommand};
+use sidestep::gesture::{self, Model};
+use sidestep::law::Law;
+use sidestep_hw::announce::Announcer;
+use sidestep_hw::base;
 use sidestep_hw::config::{self, RobotConfig, Sonars};
 use sidestep_hw::coverage;
 use sidestep_hw::decide;
@@ -9,8 +13,11 @@ use sidestep_hw::drive::{self, Clock, Ending, Signals, Status};
 use sidestep_hw::edge;
 use sidestep_hw::emulate::{Line, Link, serve};
 use sidestep_hw::faults;
-use sidestep_hw::pilot::{Pilot, settings};
+use sidestep_hw::gestures;
+use sidestep_hw::meet::{self, Meeting, Watch};
+use sidestep_hw::pilot::{Pilot, settings, usual_law};
 use sidestep_hw::replay::{self, Columns};
+use sidestep_hw::skeletons::Lines;
 use sidestep_hw::{log, transport};
 use sidestep_sim::scenario::{Knobs, NAMES, Scenario};
 use sidestep_sim::sonar::Faults;
@@ -47,7 +54,9 @@ enum Command {
     /// timeline.svg too: belief, decision and distance over time), edge (S4: a planned way through
     /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
     /// and no log), coverage (every edge of a floor, some of them blocked, by S4 with a laser;
-    /// likewise; --data FILE for a floor of your own).
+    /// likewise; --data FILE for a floor of your own), valley (S3's Figures 8 and 9: people are asked,
+    /// lead the robot or let it choose, and are passed; in virtual time, without a log), gesture
+    /// (somebody leads the robot by gestures, S3 Fig. 8).
     Demo {
         /// What to show.
         #[arg(default_value = demo::FIG12)]
@@ -70,6 +79,10 @@ enum Command {
         /// People walk on even into a robot that stands still.
         #[arg(long)]
         inconsiderate: bool,
+        /// A command that speaks what the robot says, such as espeak-ng; it gets the words as its last
+        /// argument.
+        #[arg(long, value_name = "COMMAND")]
+        speech: Option<String>,
         /// How much faster than real time.
         #[arg(long, default_value_t = 4.0)]
         speed: f64,
@@ -97,6 +110,17 @@ enum Command {
         /// Where to write the log.
         #[arg(long, default_value = "sidestep-log.jsonl", value_name = "FILE")]
         log: PathBuf,
+        /// Meet people by S3's law: where skeletons come from. - is standard input, tcp:HOST:PORT a
+        /// server, else a file or a named pipe; one line of JSON a picture, see `sidestep gestures`.
+        /// The log does not replay: it does not hold the pictures.
+        #[arg(long, value_name = "SOURCE", requires = "meeting")]
+        people: Option<String>,
+        /// S3's parameters; see `sidestep config --meeting`.
+        #[arg(long, value_name = "FILE")]
+        meeting: Option<PathBuf>,
+        /// What speaks: a command that gets the words as its last argument, such as "espeak-ng -s 130".
+        #[arg(long, value_name = "COMMAND")]
+        speech: Option<String>,
     },
     /// Be the robot: a simulated base for other hosts, on a pseudo-terminal or a TCP port.
     Emulate {
@@ -145,8 +169,53 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Recognise gestures in skeletons that a depth camera's program gives as lines of JSON.
+    ///
+    /// One line is one frame: {"t": 41730, "people": [{"id": 7, "neck": [0.12, 0.31, 2.4],
+    /// "left_shoulder": [..], "right_shoulder": [..], "left_elbow": [..], "right_elbow": [..],
+    /// "left_wrist": [..], "right_wrist": [..]}]}, with t in ms of the camera's clock and points in
+    /// metres, x to the camera's left, y up, z ahead. Left and right are the person's own; a joint
+    /// that is not tracked is left out.
+    ///
+    /// Prints a line of JSON whenever what somebody shows, or what counts, changes. `demo gesture`
+    /// leaves a file to try.
+    Gestures {
+        /// Where skeletons come from: - is standard input, tcp:HOST:PORT a server, else a file.
+        source: String,
+        /// Which of S3's two models recognises.
+        #[arg(long, value_enum, default_value = "net")]
+        model: ModelName,
+        /// Frames in a row after which a gesture counts, 1 to 60.
+        #[arg(long, default_value_t = gesture::Settings::default().frames)]
+        frames: u32,
+        /// The same for stop.
+        #[arg(long, default_value_t = gesture::Settings::default().stop_frames)]
+        stop_frames: u32,
+    },
     /// Print the default configuration, commented.
-    Config,
+    Config {
+        /// The parameters of S3's law instead.
+        #[arg(long)]
+        meeting: bool,
+    },
+}
+
+/// S3's two models.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum ModelName {
+    /// The back-propagation net.
+    Net,
+    /// The linear support vector machine.
+    Svm,
+}
+
+impl From<ModelName> for gesture::Model {
+    fn from(name: ModelName) -> Self {
+        match name {
+            ModelName::Net => Self::NEURAL_NETWORK,
+            ModelName::Svm => Self::SUPPORT_VECTOR_MACHINE,
+        }
+    }
 }
 
 fn goal(text: &str) -> Result<[f32; 2], String> {
@@ -182,8 +251,16 @@ fn main() -> ExitCode {
         eprintln!("sidestep: cannot catch Ctrl-C: {error}");
         return ExitCode::FAILURE;
     }
-    // Ends with the program.
-    std::thread::spawn(|| SIGNALS.listen());
+    // Standard input may be what skeletons come from.
+    let taken = match &arguments.command {
+        Command::Gestures { .. } => true,
+        Command::Run { people, .. } => people.as_deref() == Some("-"),
+        _ => false,
+    };
+    if !taken {
+        // Ends with the program.
+        std::thread::spawn(|| SIGNALS.listen());
+    }
     match run(arguments.command) {
         Ok(code) => code,
         Err(error) => {
@@ -203,6 +280,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             dropout,
             false_echo,
             inconsiderate,
+            speech,
             speed,
             out,
             config,
@@ -221,7 +299,7 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                 },
                 ..Knobs::default()
             };
-            run_demo(&Options {
+            let options = Options {
                 scenario,
                 data,
                 start_time,
@@ -232,7 +310,12 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
                     None if decides => decide::table_1()?,
                     config => read_config(config.as_deref())?,
                 },
-            })
+            };
+            if options.scenario == gestures::DEMO {
+                gestures::demo(&options, speech.as_deref(), &SIGNALS)?;
+                return Ok(ExitCode::SUCCESS);
+            }
+            run_demo(&options)
         }
         Command::Run {
             port,
@@ -240,11 +323,32 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             goal,
             baud,
             log,
+            people,
+            meeting,
+            speech,
         } => {
             let config = read_config(Some(&config))?;
+            let run = Errand {
+                port,
+                config,
+                goal,
+                baud,
+                log,
+            };
+            let Some(source) = people else {
+                return match config.sonars {
+                    Sonars::Front8 => run_base::<8>(&run),
+                    Sonars::All16 => run_base::<16>(&run),
+                };
+            };
+            let file = meeting.ok_or("--people needs --meeting")?;
+            let text = std::fs::read_to_string(&file)
+                .map_err(|error| format!("{}: {error}", file.display()))?;
+            let meeting = Meeting::parse(&text, &file.display().to_string())?;
+            let speech = speech.as_deref();
             match config.sonars {
-                Sonars::Front8 => run_base::<8>(&port, config, goal, baud, &log),
-                Sonars::All16 => run_base::<16>(&port, config, goal, baud, &log),
+                Sonars::Front8 => meet_people::<8>(&run, &meeting, &source, speech),
+                Sonars::All16 => meet_people::<16>(&run, &meeting, &source, speech),
             }
         }
         Command::Emulate {
@@ -267,53 +371,74 @@ fn run(command: Command) -> Result<ExitCode, Box<dyn Error>> {
             }
         }
         Command::Faults { seeds, out } => run_faults(seeds, out.as_deref()),
-        Command::Config => {
-            print!("{}", config::default_toml());
+        Command::Gestures {
+            source,
+            model,
+            frames,
+            stop_frames,
+        } => {
+            let settings = gesture::Settings {
+                frames,
+                stop_frames,
+                ..gesture::Settings::default()
+            };
+            let lines = Lines::open(&source)?;
+            let clock = Clock::new(1.0);
+            let mut out = std::io::stdout().lock();
+            gestures::watch(lines, model.into(), settings, || clock.now(), &mut out)?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Command::Config { meeting } => {
+            if meeting {
+                print!("{}", meet::default_toml());
+            } else {
+                print!("{}", config::default_toml());
+            }
             Ok(ExitCode::SUCCESS)
         }
     }
 }
 
+/// Says where a run's picture is.
+fn keep_picture(status: &mut Status, folder: &Path) {
+    let picture = folder.join("picture.svg");
+    status.keep(&format!("picture: {}\n", picture.display()));
+}
+
 fn run_demo(options: &Options) -> Result<ExitCode, Box<dyn Error>> {
     let mut status = Status::default();
-    if options.scenario == edge::NAME {
-        edge::demo(options, &mut status)?;
-        return Ok(ExitCode::SUCCESS);
+    match options.scenario.as_str() {
+        edge::NAME => {
+            edge::demo(options, &mut status)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        decide::NAME => {
+            let (folder, contacts) = decide::demonstrate(options, &SIGNALS, &mut status)?;
+            keep_picture(&mut status, &folder);
+            return touched(contacts);
+        }
+        coverage::demo::NAME => {
+            let (folder, run) = coverage::demo::run(options, &mut status)?;
+            keep_picture(&mut status, &folder);
+            return touched(run.summary.contacts_while_moving());
+        }
+        demo::VALLEY => return touched(demo::valley(options, &mut status)?),
+        _ => {}
     }
     let mut contacts = 0;
-    if options.scenario == decide::NAME {
-        let (folder, touched) = decide::demonstrate(options, &SIGNALS, &mut status)?;
-        status.keep(&format!(
-            "picture: {}\n",
-            folder.join("picture.svg").display()
-        ));
-        return match touched {
-            0 => Ok(ExitCode::SUCCESS),
-            _ => Err(format!("the robot touched something {touched} times while it moved").into()),
-        };
-    }
-    if options.scenario == coverage::demo::NAME {
-        let (folder, run) = coverage::demo::run(options, &mut status)?;
-        let picture = folder.join("picture.svg");
-        status.keep(&format!("picture: {}\n", picture.display()));
-        return match run.summary.contacts_while_moving() {
-            0 => Ok(ExitCode::SUCCESS),
-            contacts => {
-                Err(format!("the robot touched something {contacts} times while it moved").into())
-            }
-        };
-    }
     for scenario in demo::scenarios(options)? {
         let (folder, summary) = demo::run(&scenario, options, &SIGNALS, &mut status)?;
         contacts += summary.contacts_while_moving();
-        status.keep(&format!(
-            "picture: {}\n",
-            folder.join("picture.svg").display()
-        ));
+        keep_picture(&mut status, &folder);
         if summary.ending == Ending::Operator {
             break;
         }
     }
+    touched(contacts)
+}
+
+/// Success if nothing was touched while the robot moved.
+fn touched(contacts: u32) -> Result<ExitCode, Box<dyn Error>> {
     if contacts > 0 {
         return Err(format!("the robot touched something {contacts} times while it moved").into());
     }
@@ -342,58 +467,93 @@ fn run_faults(seeds: u64, out: Option<&Path>) -> Result<ExitCode, Box<dyn Error>
     }
 }
 
-fn run_base<const N: usize>(
-    port: &str,
+/// A drive of a real base.
+struct Errand {
+    port: String,
     config: RobotConfig,
     goal: [f32; 2],
     baud: Option<u32>,
-    log: &Path,
-) -> Result<ExitCode, Box<dyn Error>> {
-    // A log of an earlier run is somebody's record: never written over.
-    let file = File::create_new(log).map_err(|error| format!("log {}: {error}", log.display()))?;
-    let serial = !port.starts_with("tcp:");
-    let mut pilot = Pilot::<_, N>::new(
-        config,
-        goal,
-        settings(&config, serial, baud),
-        Box::new(BufWriter::new(file)),
-    )?;
-    let mut status = Status::default();
-    let ending = drive::run(
-        &mut pilot,
-        || transport::open(port),
-        Clock::new(1.0),
-        None,
-        &SIGNALS,
-        &mut status,
-    )
-    .inspect_err(|_| {
-        // Nothing was driven: an empty log would only stand in the way of the next try.
-        let _ = std::fs::remove_file(log);
-    })?;
-    if let Some(error) = pilot.log_error() {
-        return Err(format!("log {}: not complete: {error}", log.display()).into());
-    }
-    let tally = pilot.tally();
-    let stops: Vec<String> = tally
-        .stops
-        .iter()
-        .map(|(kind, count)| format!("{kind} {count}"))
-        .collect();
-    status.keep(&format!(
-        "ended: {ending:?}; {} ticks; stops: {}; log: {}",
-        tally.ticks,
-        if stops.is_empty() {
-            "none".to_owned()
+    log: PathBuf,
+}
+
+impl Errand {
+    /// Drives a pilot with this law; `attend` is called again and again.
+    fn drive<L: Law<N>, const N: usize>(
+        &self,
+        law: L,
+        attend: impl FnMut(&mut Pilot<L, N>, u64),
+    ) -> Result<ExitCode, Box<dyn Error>> {
+        let log = &self.log;
+        // A log of an earlier run is somebody's record: never written over.
+        let file =
+            File::create_new(log).map_err(|error| format!("log {}: {error}", log.display()))?;
+        let serial = !self.port.starts_with("tcp:");
+        let mut pilot = Pilot::<L, N>::with_law(
+            law,
+            self.config,
+            self.goal,
+            settings(&self.config, serial, self.baud),
+            Box::new(BufWriter::new(file)),
+        )?;
+        let mut status = Status::default();
+        let ending = drive::run_attended(
+            &mut pilot,
+            || transport::open(&self.port),
+            Clock::new(1.0),
+            None,
+            &SIGNALS,
+            &mut status,
+            attend,
+        )
+        .inspect_err(|_| {
+            // Nothing was driven: an empty log would only stand in the way of the next try.
+            let _ = std::fs::remove_file(log);
+        })?;
+        if let Some(error) = pilot.log_error() {
+            return Err(format!("log {}: not complete: {error}", log.display()).into());
+        }
+        let tally = pilot.tally();
+        let stops: Vec<String> = tally
+            .stops
+            .iter()
+            .map(|(kind, count)| format!("{kind} {count}"))
+            .collect();
+        status.keep(&format!(
+            "ended: {ending:?}; {} ticks; stops: {}; log: {}",
+            tally.ticks,
+            if stops.is_empty() {
+                "none".to_owned()
+            } else {
+                stops.join(", ")
+            },
+            log.display()
+        ));
+        Ok(if ending == Ending::Arrived {
+            ExitCode::SUCCESS
         } else {
-            stops.join(", ")
-        },
-        log.display()
-    ));
-    Ok(if ending == Ending::Arrived {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::from(2)
+            ExitCode::from(2)
+        })
+    }
+}
+
+fn run_base<const N: usize>(errand: &Errand) -> Result<ExitCode, Box<dyn Error>> {
+    let law = usual_law(errand.config.core, base::ring::<N>(&errand.config)?);
+    errand.drive(law, |_, _| {})
+}
+
+/// Among people, by S3's law.
+fn meet_people<const N: usize>(
+    errand: &Errand,
+    meeting: &Meeting,
+    source: &str,
+    speech: Option<&str>,
+) -> Result<ExitCode, Box<dyn Error>> {
+    let law = meeting.law::<N>(&errand.config)?;
+    let mut watch = Watch::new(Lines::open(source)?, Model::default())?;
+    let mut announcer = Announcer::new(speech);
+    let mut out = std::io::stdout();
+    errand.drive(law, |pilot: &mut Pilot<_, N>, now| {
+        meet::attend(pilot, &mut watch, &mut announcer, &mut out, now);
     })
 }
 

@@ -365,6 +365,11 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
         self.note(now, "reset by the operator".to_owned());
     }
 
+    /// Lets the base beep; see [`crate::announce::beeps`].
+    pub fn beep(&mut self, tones: &[u8], now: u64) {
+        self.session.beep(tones, now);
+    }
+
     /// Stops the robot and ends the session.
     pub fn close(&mut self, now: u64) {
         self.halt(Halt::Operator, now);
@@ -404,7 +409,8 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
         }
     }
 
-    fn note(&mut self, t: u64, text: String) {
+    /// Shows and records something to know.
+    pub fn note(&mut self, t: u64, text: String) {
         if self.header_written {
             self.write(&Record::Event {
                 t,

@@ -440,6 +440,11 @@ impl Session {
         self.machine.tell(HostCommand::emergency_stop(), now_ms);
     }
 
+    /// Lets a robot that streams beep: pairs of a duration in units of 20 ms and a tone in half cycles.
+    pub fn beep(&mut self, tones: &[u8], now_ms: u64) {
+        self.machine.tell(HostCommand::say(tones), now_ms);
+    }
+
     /// Asks for motors and sonars again after [`Event::Disabled`].
     pub fn enable(&mut self, now_ms: u64) {
         if self.machine.phase == Phase::Disabled {

@@ -3,8 +3,8 @@
 //!
 //! - [`world`]: walls, boxes, discs and [`person`]s in the plane; [`eth`] and [`barn`] read
 //!   recorded people and cluttered worlds.
-//! - [`sonar`], [`compass`], [`base`]: what the robot senses with, wrongly where asked to, and what
-//!   it drives with.
+//! - [`sonar`], [`compass`], [`depth_camera`], [`skeleton`], [`base`]: what the robot senses
+//!   with, wrongly where asked to, and what it drives with.
 //! - [`laser`]: a scanner beside them, not on the serial line.
 //! - [`robot`]: the robot's side of the ARCOS protocol, bytes in and bytes out; [`uart`]: what a
 //!   line set to the wrong baud rate makes of them; [`link`]: what a bad line makes of packets.
@@ -33,6 +33,7 @@ pub mod barn;
 pub mod base;
 pub mod compass;
 pub mod corridor;
+pub mod depth_camera;
 pub mod episode;
 mod error;
 pub mod eth;
@@ -43,6 +44,7 @@ pub mod person;
 pub mod robot;
 pub mod scenario;
 pub mod simulation;
+pub mod skeleton;
 pub mod sonar;
 mod table;
 pub mod truth;

@@ -29,3 +29,13 @@ pub fn sqrt(x: f32, result: f32) -> bool {
 pub fn atan2(result: f32) -> bool {
     (-std::f32::consts::PI..=std::f32::consts::PI).contains(&result)
 }
+
+/// math.INV-5: natural logarithm.
+#[must_use]
+pub fn ln(x: f32, result: f32) -> bool {
+    if x >= 1.0 && x.is_finite() {
+        result >= 0.0 && result <= x - 1.0
+    } else {
+        result == 0.0
+    }
+}

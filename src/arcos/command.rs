@@ -228,6 +228,17 @@ impl<'a> HostCommand<'a> {
     }
 }
 
+impl<'a> HostCommand<'a> {
+    /// [`SAY`]: beeps; pairs of a duration in units of 20 ms and a tone in half cycles.
+    #[must_use]
+    pub const fn say(tones: &'a [u8]) -> Self {
+        Self {
+            number: SAY,
+            argument: Argument::Text(tones),
+        }
+    }
+}
+
 impl HostCommand<'static> {
     /// A command without an argument.
     #[must_use]
