@@ -10,6 +10,7 @@ use sidestep::controller::Controller;
 use sidestep::decide::Decide;
 use sidestep::edge::{Edge, PlannedEdge};
 use sidestep::escape::Escape;
+use sidestep::interact::Interact;
 use sidestep::law::Law;
 use sidestep::observation::Observation;
 use sidestep::preset;
@@ -78,6 +79,15 @@ pub extern "C" fn sidestep_tick_decide(
 #[unsafe(no_mangle)]
 pub extern "C" fn sidestep_tick_edge(
     controller: &mut Controller<Edge<[PlannedEdge; 4], 3>, 3>,
+    observation: &Observation<3>,
+) -> i32 {
+    tick(controller, observation)
+}
+
+/// The same for S3's law.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick_interact(
+    controller: &mut Controller<Interact, 3>,
     observation: &Observation<3>,
 ) -> i32 {
     tick(controller, observation)
