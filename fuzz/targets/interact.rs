@@ -277,6 +277,7 @@ fn ticks(settings: &Settings, config: &Config, frame: Commissioned, bytes: &mut 
                 stuck: false,
             }],
             obstacle: None,
+            ahead: Length::MAX,
             room: [Length::MAX; 2],
             beside: [Length::MAX; 2],
             base: BaseStatus {
