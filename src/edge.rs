@@ -12,7 +12,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::SonarReading;
-use crate::quantity::{Angle, Instant, Length, OutOfRange, in_range};
+use crate::quantity::{Angle, Instant, Length, OutOfRange, in_range, within};
 use crate::ring::{Placement, Ring};
 use crate::shield::milliseconds;
 use crate::view::{Pose, View};
@@ -1120,7 +1120,9 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
             self.events.rotate_left(1);
             EVENTS - 1
         });
-        self.events[place] = Some(event);
+        if let Some(slot) = self.events.get_mut(place) {
+            *slot = Some(event);
+        }
     }
 
     fn edge_now(&self) -> Option<PlannedEdge> {
@@ -1158,7 +1160,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
                 };
                 if self.way_back.is_none_or(|leg| reached(&leg)) {
                     // Half a right angle on, towards the edge.
-                    let along = (place.x + place.y.abs()).clamp(0.0, edge.length());
+                    let along = (place.x + place.y.abs()).max(0.0).min(edge.length());
                     let target = edge.to_world(Vector2::new(along, 0.0));
                     self.way_back = PlannedEdge::new(pose.position, target).ok();
                 }
@@ -1190,8 +1192,8 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
     fn hindrance(&self, view: &View<N>, cosines: &[f32; N]) -> Option<usize> {
         let mut hindrance = None;
         let mut least = f32::INFINITY;
-        for (i, cosine) in cosines.iter().enumerate() {
-            let range = match view.sonar[i] {
+        for (i, (cosine, reading)) in cosines.iter().zip(&view.sonar).enumerate() {
+            let range = match reading {
                 SonarReading::Echo(range) => range.get(),
                 SonarReading::TooNear => 0.0,
                 _ => continue,
@@ -1207,11 +1209,13 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
 
     /// Where a sonar's vector ends, in the odometry frame.
     fn vector_end(&self, view: &View<N>, sonar: usize) -> Vector2<f32> {
-        let range = match view.sonar[sonar] {
-            SonarReading::Echo(range) => range.get(),
+        let Some(at) = self.ring.sonars().get(sonar) else {
+            return view.pose.position;
+        };
+        let range = match view.sonar.get(sonar) {
+            Some(SonarReading::Echo(range)) => range.get(),
             _ => 0.0,
         };
-        let at = &self.ring.sonars()[sonar];
         view.pose.to_world(at.position + at.axis * range)
     }
 
@@ -1415,8 +1419,8 @@ pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice 
     }
     let share = (1.0 - error.abs() / error_max).clamp(0.0, 1.0);
     Advice {
-        speed: (speed.clamp(0.0, config.speed_max)) * if share > 0.0 { share } else { 0.0 },
-        turn_rate: turn_rate.clamp(-turn_rate_max, turn_rate_max),
+        speed: speed.max(0.0).min(config.speed_max) * if share > 0.0 { share } else { 0.0 },
+        turn_rate: within(turn_rate, turn_rate_max),
     }
 }
 
