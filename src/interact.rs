@@ -972,7 +972,8 @@ impl Interact {
                     if !track.in_sight && off < GATE && near.is_none_or(|(_, least)| off < least) {
                         near = Some((i, off));
                     }
-                    if self.tracks[oldest].is_some_and(|other| track.seen < other.seen) {
+                    let other = self.tracks.get(oldest).copied().flatten();
+                    if other.is_some_and(|other| track.seen < other.seen) {
                         oldest = i;
                     }
                 }
