@@ -143,7 +143,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
-    interact: machine_keeps_its_promises, advice_is_within_limits;
+    interact: machine_keeps_its_promises, frames_are_borne_out, advice_is_within_limits;
     valley: admitted_way_is_clear, accepted_valley_is_admitted, share_is_a_share,
         order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;

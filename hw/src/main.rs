@@ -49,10 +49,10 @@ enum Command {
     /// Scenarios: fig12 (the three of S1's Figure 12, the default), fig12-head-on, fig12-crossing,
     /// fig12-from-side, head-on-80 (a person at 80 cm/s), lab (a room with chair and table),
     /// corridor (10 m between walls 1.2 m apart), corridor-walker (the same with somebody coming),
-    /// empty-room, blocked-way (somebody in the way who leaves after a while), approach (somebody
-    /// comes straight at the robot in S2's laboratory), decide (the same with S2's decision, its Table 1
-    /// and a noisy sonar; leaves timeline.svg too: belief, decision and distance over time), hotel
-    /// (recorded people; needs --data), edge (S4: a planned way through
+    /// empty-room, blocked-way (somebody in the way who leaves after a while), hotel (recorded
+    /// people; needs --data), approach (somebody comes straight at the robot in S2's laboratory), decide
+    /// (the same with S2's decision, its Table 1 and a noisy sonar; leaves timeline.svg too: belief,
+    /// decision and distance over time), edge (S4: a planned way through
     /// corridors with three obstacles, and a classical detector on the same way; no pseudo-terminal
     /// and no log), coverage (every edge of a floor, some of them blocked, by S4 with a laser;
     /// likewise; --data FILE for a floor of your own), valley (S3's Figures 8 and 9: people are asked,
