@@ -131,7 +131,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         stop_dominates, arrival_is_not_proximity, image_direction_is_folded,
         advice_is_within_limits;
     decide: beliefs_are_on_the_simplex, updates_stay_on_the_simplex,
-        predictions_stay_on_the_simplex, table_2_never_stops, expected_losses_are_between,
+        predictions_stay_on_the_simplex, only_stochastic_rows_pass, table_2_never_stops, expected_losses_are_between,
         ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move;
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
         blind_is_never_clear, greatest_projection_decides, steering_is_bounded,

@@ -68,6 +68,16 @@ impl<const S: usize> Belief<S> {
         Ok(Self(completed(parts)))
     }
 
+    /// The belief of these parts; none if they do not add up to [`ONE`].
+    #[must_use]
+    pub fn from_parts(parts: [u32; S]) -> Option<Self> {
+        let mut sum = 0;
+        for part in parts {
+            sum += u64::from(part);
+        }
+        (sum == u64::from(ONE)).then_some(Self(parts))
+    }
+
     /// Each state as probable as any other.
     #[must_use]
     pub fn even() -> Self {
@@ -233,12 +243,25 @@ impl<const S: usize> TransitionMatrix<S> {
     ///
     /// # Errors
     /// [`NotStochastic`], with the row, if an entry is not in [0, 1] or a row does not add up to 1.
-    //= decide.INV-6
     pub fn new(rows: &[[f32; S]; S]) -> Result<Self, NotStochastic> {
+        Self::check(rows)?;
         let mut checked = [Belief([0; S]); S];
-        for from in 0..S {
+        for (from, row) in rows.iter().enumerate() {
+            checked[from] =
+                Belief::from_weights(row).map_err(|_| NotStochastic::Row { from, sum: 0.0 })?;
+        }
+        Ok(Self { rows: checked })
+    }
+
+    /// Whether rows are those of a transition matrix.
+    ///
+    /// # Errors
+    /// [`NotStochastic`], as [`new`](Self::new) has it.
+    //= decide.INV-6
+    pub fn check(rows: &[[f32; S]; S]) -> Result<(), NotStochastic> {
+        for (from, row) in rows.iter().enumerate() {
             let mut sum = 0.0;
-            for (to, &value) in rows[from].iter().enumerate() {
+            for (to, &value) in row.iter().enumerate() {
                 if !(0.0..=1.0).contains(&value) {
                     return Err(NotStochastic::Entry { from, to, value });
                 }
@@ -247,10 +270,14 @@ impl<const S: usize> TransitionMatrix<S> {
             if (sum - 1.0).abs() > ROW_ERROR {
                 return Err(NotStochastic::Row { from, sum });
             }
-            checked[from] =
-                Belief::from_weights(&rows[from]).map_err(|_| NotStochastic::Row { from, sum })?;
         }
-        Ok(Self { rows: checked })
+        Ok(())
+    }
+
+    /// A matrix of rows that are distributions already.
+    #[must_use]
+    pub const fn from_rows(rows: [Belief<S>; S]) -> Self {
+        Self { rows }
     }
 
     /// Whatever was before, each state is as probable as any other.
