@@ -12,7 +12,7 @@ use crate::config::{Config, Field, is_count, parameters};
 use crate::gesture::{self, Gesture, PEOPLE_MAX};
 use crate::law::{Advice, Law};
 use crate::math;
-use crate::quantity::{Angle, Instant, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Instant, OutOfRange, Speed, in_range, within};
 use crate::shield::milliseconds;
 use crate::valley::{Geometry, Person, Scene, Side};
 use crate::view::{Pose, View};
@@ -935,16 +935,19 @@ impl Interact {
         let radius = measured.unwrap_or(0.0).max(self.settings.person_radius);
         let place = pose.to_world(Vector2::new(self.settings.camera_forward + depth, left));
         let slot = self.slot(someone.id, place);
+        let Some(held) = self.tracks.get_mut(slot) else {
+            return;
+        };
         // A number that is there twice is nobody's: neither is taken at their gesture.
-        let twice = self.tracks[slot].is_some_and(|track| track.in_sight && track.id == someone.id);
-        let position = match &self.tracks[slot] {
+        let twice = held.is_some_and(|track| track.in_sight && track.id == someone.id);
+        let position = match &*held {
             // The mean of where they were and where they are seen, which halves the noise.
             Some(track) if !twice && math::norm(track.position - place) < GATE => {
                 (track.position + place) / 2.0
             }
             _ => place,
         };
-        self.tracks[slot] = Some(Track {
+        *held = Some(Track {
             id: someone.id,
             position,
             radius,
@@ -1244,7 +1247,8 @@ impl Interact {
         let mut list = [Person::at(0.0, 0.0, self.settings.person_radius).ok()?; PEOPLE_MAX];
         let mut i = 0;
         while i < count {
-            list[i] = people[i]?;
+            let (slot, person) = (list.get_mut(i)?, people.get(i)?);
+            *slot = (*person)?;
             i += 1;
         }
         let scene = Scene::new(list.get(..count)?).ok()?;
@@ -1338,7 +1342,7 @@ impl Interact {
             let error = heading.minus(view.pose.heading).get();
             Advice {
                 speed: speed * unseen * (1.0 - error.abs() / FRAC_PI_2).clamp(0.0, 1.0),
-                turn_rate: (config.heading_gain * error).clamp(-limit, limit),
+                turn_rate: within(config.heading_gain * error, limit),
             }
         };
         match drive {

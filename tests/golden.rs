@@ -585,136 +585,6 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
                 core: Some(core),
             }
         }
-        //= valley.INV-1
-        //= valley.INV-2
-        //= valley.INV-6
-        ("S3.E1-24", variant) => valley_regions(variant == "lit", i),
-        ("S3.E3-5", "lit") => {
-            let (lateral, range) = (i.number("X"), i.number("Z_range"));
-            let person = Person::new(lateral as f32, range as f32, 0.2).expect("a person");
-            let bearing = f64::from(person.bearing()).to_degrees();
-            Computed {
-                reference: vec![
-                    ("delta_deg", number(spec::valley::e3(lateral, range))),
-                    ("Z_temp", number(spec::valley::e4(lateral, range))),
-                    ("X_term", number(spec::valley::e5(lateral, range, 35.0))),
-                ],
-                core: Some(vec![
-                    ("delta_deg", number(bearing)),
-                    ("Z_temp", radians(person.depth())),
-                    ("X_term", radians(kinect(0.25, 0.3).edge(&person))),
-                ]),
-            }
-        }
-        ("S3.E10", "rec") => {
-            let (left, right) = (i.number("x_i"), i.number("x_i1"));
-            let people = [left, right].map(|x| Person::new(x as f32, 5.0, 0.2).expect("a person"));
-            let scene = Scene::new(&people).expect("two people");
-            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
-            let half = spec::valley::e10_printed(left, right);
-            Computed {
-                reference: vec![
-                    ("x_ca", number(spec::valley::e10(left, right))),
-                    ("paper_literal_half_width", number(half)),
-                ],
-                core: Some(vec![("x_ca", radians(region.lateral))]),
-            }
-        }
-        ("S3.E14-16", "rec") => {
-            let (lateral, depth) = (i.number("x_ca"), i.number("Z_temp"));
-            let range = spec::valley::e15(lateral, depth);
-            let length = spec::valley::e16_printed(&s3_geometry(i), range, i.number("r_f"));
-            // Two people as deep as that, with the middle between them.
-            let people = [-0.5, 0.5].map(|off| {
-                Person::at(depth as f32, -(lateral as f32 + off), 0.2).expect("a person")
-            });
-            let scene = Scene::new(&people).expect("two people");
-            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
-            let heading = f64::from(Heading::new(region.sine).angle()).to_degrees();
-            Computed {
-                reference: vec![
-                    ("theta_ca_deg", number(spec::valley::e14(lateral, depth))),
-                    ("Z_ca", number(range)),
-                    ("d_ca", number(length)),
-                ],
-                core: Some(vec![
-                    ("theta_ca_deg", number(heading)),
-                    ("Z_ca", radians(region.range)),
-                ]),
-            }
-        }
-        ("S3.E19-20", "rec") => {
-            let (lateral, range) = (i.number("x_ca"), i.number("Z_ca"));
-            let geometry = spec::valley::Geometry {
-                robot_radius: i.number("r_r"),
-                safety_distance: 0.0,
-                view_half_angle_deg: 35.0,
-            };
-            let heading = spec::valley::e19(lateral, range);
-            let length = spec::valley::e20_printed(&geometry, lateral, range, i.number("r_p"));
-            Computed {
-                reference: vec![
-                    ("theta_ca_deg", number(heading)),
-                    ("d_ca_paper", number(length)),
-                    ("valid", Value::from(heading.is_finite())),
-                ],
-                core: None,
-            }
-        }
-        //= valley.INV-4
-        ("S3.E25" | "S3.E26", variant) => {
-            let (width, whole) = (i.number("theta_r_deg"), i.number("theta_max_deg"));
-            let [greatest, printed, exact, derived] = if equation == "S3.E25" {
-                ["v_max", "v_printed", "v_exact", "v"]
-            } else {
-                [
-                    "omega_max",
-                    "omega_printed",
-                    "omega_exact",
-                    "omega_magnitude",
-                ]
-            };
-            let share = if variant == "rec" {
-                spec::valley::e25(width, whole)
-            } else {
-                spec::valley::e25_printed(width, whole)
-            };
-            let core = f64::from(kinect(0.25, 0.3).share((width as f32).to_radians()));
-            let [share, core] = [share, core].map(|share| number(share * i.number(greatest)));
-            let names = match variant {
-                "printed" => vec![printed, exact],
-                _ => vec![derived],
-            };
-            let with = |value: &Value| names.iter().map(|name| (*name, value.clone())).collect();
-            Computed {
-                reference: with(&share),
-                core: Some(with(&core)),
-            }
-        }
-        ("S3.T4T5.time", "printed") => {
-            let [distance, heading, speed, turn_rate] =
-                ["d_m", "heading_deg", "v", "omega"].map(|name| i.number(name));
-            let time = number(spec::valley::time(distance, heading, speed, turn_rate));
-            Computed {
-                reference: vec![("time_printed_s", time.clone()), ("time_identity_s", time)],
-                core: None,
-            }
-        }
-        //= valley.INV-8
-        ("S3.select", "printed") => {
-            let candidates: Vec<f64> = i.0["candidates_deg"]
-                .as_array()
-                .expect("candidates")
-                .iter()
-                .map(|candidate| candidate.as_f64().expect("a heading"))
-                .collect();
-            let aim = i.0["waypoint_deg"].as_f64().unwrap_or(0.0);
-            let nearest = spec::valley::nearest(&candidates, aim);
-            Computed {
-                reference: vec![("heading_deg", nearest.map_or(Value::Null, number))],
-                core: None,
-            }
-        }
         ("S2.E6", "lit") => {
             let (heading, camera) = (i.number("theta_R_deg"), i.number("theta_cam_deg"));
             let core = avoid::obstacle_robot_angle(
@@ -893,6 +763,136 @@ fn compute(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
             }
         }
         (equation, variant) if equation.starts_with("S4.") => return edge(equation, variant, i),
+        //= valley.INV-1
+        //= valley.INV-2
+        //= valley.INV-6
+        ("S3.E1-24", variant) => valley_regions(variant == "lit", i),
+        ("S3.E3-5", "lit") => {
+            let (lateral, range) = (i.number("X"), i.number("Z_range"));
+            let person = Person::new(lateral as f32, range as f32, 0.2).expect("a person");
+            let bearing = f64::from(person.bearing()).to_degrees();
+            Computed {
+                reference: vec![
+                    ("delta_deg", number(spec::valley::e3(lateral, range))),
+                    ("Z_temp", number(spec::valley::e4(lateral, range))),
+                    ("X_term", number(spec::valley::e5(lateral, range, 35.0))),
+                ],
+                core: Some(vec![
+                    ("delta_deg", number(bearing)),
+                    ("Z_temp", radians(person.depth())),
+                    ("X_term", radians(kinect(0.25, 0.3).edge(&person))),
+                ]),
+            }
+        }
+        ("S3.E10", "rec") => {
+            let (left, right) = (i.number("x_i"), i.number("x_i1"));
+            let people = [left, right].map(|x| Person::new(x as f32, 5.0, 0.2).expect("a person"));
+            let scene = Scene::new(&people).expect("two people");
+            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
+            let half = spec::valley::e10_printed(left, right);
+            Computed {
+                reference: vec![
+                    ("x_ca", number(spec::valley::e10(left, right))),
+                    ("paper_literal_half_width", number(half)),
+                ],
+                core: Some(vec![("x_ca", radians(region.lateral))]),
+            }
+        }
+        ("S3.E14-16", "rec") => {
+            let (lateral, depth) = (i.number("x_ca"), i.number("Z_temp"));
+            let range = spec::valley::e15(lateral, depth);
+            let length = spec::valley::e16_printed(&s3_geometry(i), range, i.number("r_f"));
+            // Two people as deep as that, with the middle between them.
+            let people = [-0.5, 0.5].map(|off| {
+                Person::at(depth as f32, -(lateral as f32 + off), 0.2).expect("a person")
+            });
+            let scene = Scene::new(&people).expect("two people");
+            let region = kinect(0.25, 0.3).region(&scene, 1).expect("between them");
+            let heading = f64::from(Heading::new(region.sine).angle()).to_degrees();
+            Computed {
+                reference: vec![
+                    ("theta_ca_deg", number(spec::valley::e14(lateral, depth))),
+                    ("Z_ca", number(range)),
+                    ("d_ca", number(length)),
+                ],
+                core: Some(vec![
+                    ("theta_ca_deg", number(heading)),
+                    ("Z_ca", radians(region.range)),
+                ]),
+            }
+        }
+        ("S3.E19-20", "rec") => {
+            let (lateral, range) = (i.number("x_ca"), i.number("Z_ca"));
+            let geometry = spec::valley::Geometry {
+                robot_radius: i.number("r_r"),
+                safety_distance: 0.0,
+                view_half_angle_deg: 35.0,
+            };
+            let heading = spec::valley::e19(lateral, range);
+            let length = spec::valley::e20_printed(&geometry, lateral, range, i.number("r_p"));
+            Computed {
+                reference: vec![
+                    ("theta_ca_deg", number(heading)),
+                    ("d_ca_paper", number(length)),
+                    ("valid", Value::from(heading.is_finite())),
+                ],
+                core: None,
+            }
+        }
+        //= valley.INV-4
+        ("S3.E25" | "S3.E26", variant) => {
+            let (width, whole) = (i.number("theta_r_deg"), i.number("theta_max_deg"));
+            let [greatest, printed, exact, derived] = if equation == "S3.E25" {
+                ["v_max", "v_printed", "v_exact", "v"]
+            } else {
+                [
+                    "omega_max",
+                    "omega_printed",
+                    "omega_exact",
+                    "omega_magnitude",
+                ]
+            };
+            let share = if variant == "rec" {
+                spec::valley::e25(width, whole)
+            } else {
+                spec::valley::e25_printed(width, whole)
+            };
+            let core = f64::from(kinect(0.25, 0.3).share((width as f32).to_radians()));
+            let [share, core] = [share, core].map(|share| number(share * i.number(greatest)));
+            let names = match variant {
+                "printed" => vec![printed, exact],
+                _ => vec![derived],
+            };
+            let with = |value: &Value| names.iter().map(|name| (*name, value.clone())).collect();
+            Computed {
+                reference: with(&share),
+                core: Some(with(&core)),
+            }
+        }
+        ("S3.T4T5.time", "printed") => {
+            let [distance, heading, speed, turn_rate] =
+                ["d_m", "heading_deg", "v", "omega"].map(|name| i.number(name));
+            let time = number(spec::valley::time(distance, heading, speed, turn_rate));
+            Computed {
+                reference: vec![("time_printed_s", time.clone()), ("time_identity_s", time)],
+                core: None,
+            }
+        }
+        //= valley.INV-8
+        ("S3.select", "printed") => {
+            let candidates: Vec<f64> = i.0["candidates_deg"]
+                .as_array()
+                .expect("candidates")
+                .iter()
+                .map(|candidate| candidate.as_f64().expect("a heading"))
+                .collect();
+            let aim = i.0["waypoint_deg"].as_f64().unwrap_or(0.0);
+            let nearest = spec::valley::nearest(&candidates, aim);
+            Computed {
+                reference: vec![("heading_deg", nearest.map_or(Value::Null, number))],
+                core: None,
+            }
+        }
         _ => return None,
     };
     Some(computed)
@@ -933,32 +933,6 @@ fn agrees(name: &str, found: &Value, expected: &Value, tolerance: f64) -> bool {
         }
         _ => found == expected,
     }
-}
-
-/// The values inside lists and objects, by place and name: `0.regions.R_av`. The name stands last, as
-/// its end says whether it is an angle.
-fn flatten(prefix: &str, value: &Value) -> BTreeMap<String, Value> {
-    let inside: Vec<(String, &Value)> = match value {
-        Value::Object(fields) if prefix.is_empty() => fields
-            .iter()
-            .map(|(key, value)| (key.clone(), value))
-            .collect(),
-        Value::Object(fields) => fields
-            .iter()
-            .map(|(key, value)| (format!("{prefix}.{key}"), value))
-            .collect(),
-        Value::Array(values) => {
-            let places = values.iter().enumerate();
-            places
-                .map(|(i, value)| (format!("{i}.{prefix}"), value))
-                .collect()
-        }
-        value => return BTreeMap::from([(prefix.to_owned(), value.clone())]),
-    };
-    inside
-        .into_iter()
-        .flat_map(|(key, value)| flatten(&key, value))
-        .collect()
 }
 
 /// S4, in millimetres and degrees; the core's metres are converted.
@@ -1122,6 +1096,26 @@ fn edge(equation: &str, variant: &str, i: &Input) -> Option<Computed> {
         _ => return None,
     };
     Some(computed)
+}
+
+/// The values inside lists and objects, by their names and places: `regions.0.R_av`.
+fn flatten(prefix: &str, value: &Value) -> BTreeMap<String, Value> {
+    let inside: Vec<(String, &Value)> = match value {
+        Value::Object(fields) => fields
+            .iter()
+            .map(|(key, value)| (key.clone(), value))
+            .collect(),
+        Value::Array(values) => {
+            let places = values.iter().enumerate();
+            places.map(|(i, value)| (i.to_string(), value)).collect()
+        }
+        value => return BTreeMap::from([(prefix.to_owned(), value.clone())]),
+    };
+    let dot = if prefix.is_empty() { "" } else { "." };
+    inside
+        .into_iter()
+        .flat_map(|(key, value)| flatten(&format!("{prefix}{dot}{key}"), value))
+        .collect()
 }
 
 /// The outputs that differ from what is expected; every output the core gives is looked at, and

@@ -132,10 +132,10 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         advice_is_within_limits;
     decide: beliefs_are_on_the_simplex, updates_stay_on_the_simplex,
         predictions_stay_on_the_simplex, table_2_never_stops, expected_losses_are_between,
-        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move,
-        losses_at_a_distance_are_between;
+        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move;
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
-        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
+        blind_is_never_clear, greatest_projection_decides, steering_is_bounded,
+        machine_stops_and_looks;
     gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
         unlikeness_is_finite, winner_beats_all,
         outputs_spell_the_class, gesture_counts_after_enough_frames;

@@ -467,7 +467,8 @@ fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1000.0
 }
 
-/// Prints Table I; gives the best C.
+/// Prints Table I; gives the best C and its success rate. Of equals it is the one with the fewest
+/// support vectors, so that hardly a sample lies within the margin by which a duel has to be won.
 fn table_1(set: &[Sample], count: usize) -> Result<(f64, f64), Box<dyn Error>> {
     println!(
         "\nTable I: the support vector machine, {} samples, {count} folds by person",
@@ -478,7 +479,7 @@ fn table_1(set: &[Sample], count: usize) -> Result<(f64, f64), Box<dyn Error>> {
     );
     println!("|---|---|---|---|---|---|---|");
     let folds = folds(set, count)?;
-    let mut best: Option<(usize, f64)> = None;
+    let mut best: Option<(usize, usize, f64)> = None;
     for n in PENALTIES {
         let penalty = f64::from(n).exp();
         let (mut errors, mut train, mut test, mut vectors) = (0, 0.0, 0.0, 0);
@@ -502,12 +503,12 @@ fn table_1(set: &[Sample], count: usize) -> Result<(f64, f64), Box<dyn Error>> {
             test / count as f64,
             vectors / count
         );
-        if best.is_none_or(|(least, _)| errors < least) {
-            best = Some((errors, penalty));
+        if best.is_none_or(|(least, fewest, _)| (errors, vectors) < (least, fewest)) {
+            best = Some((errors, vectors, penalty));
         }
     }
-    let (errors, penalty) = best.ok_or("no C")?;
-    println!("least errors at C = {penalty:.4}: {errors}");
+    let (errors, _, penalty) = best.ok_or("no C")?;
+    println!("least errors, with the fewest support vectors, at C = {penalty:.4}: {errors}");
     Ok((penalty, success(errors, set.len())))
 }
 
@@ -587,8 +588,8 @@ fn table_3(models: &[(&str, Model)], seed: u64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints what new people's gestures are taken for, frame by frame.
-fn confusion(name: &str, model: &Model, people: u64, seed: u64) -> Result<(), Box<dyn Error>> {
+/// Prints what new people's gestures are taken for, frame by frame; gives the share that is right (%).
+fn confusion(name: &str, model: &Model, people: u64, seed: u64) -> Result<f64, Box<dyn Error>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut counts = [[0_u32; Gesture::COUNT + 2]; Gesture::COUNT];
     for _ in 0..people {
@@ -632,7 +633,7 @@ fn confusion(name: &str, model: &Model, people: u64, seed: u64) -> Result<(), Bo
         share(rejected),
         share(whole - right - rejected)
     );
-    Ok(())
+    Ok(share(right))
 }
 
 /// Prints how unlike their own class frames of new people are: what the limit of unlikeness is for.
@@ -861,8 +862,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     println!("\nFrom here on: trained on {from}");
     table_3(&models, arguments.seed + 2)?;
+    let mut worst: f64 = 100.0;
     for (name, model) in &models {
-        confusion(name, model, 500, arguments.seed + 3)?;
+        worst = worst.min(confusion(name, model, 500, arguments.seed + 3)?);
     }
     likeness(&models[1].1, 500, arguments.seed + 3)?;
     rejections(&models, 100, arguments.seed + 4)?;
@@ -870,10 +872,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(path, source(&from, machine.planes(), &net, &usual))?;
         println!("\nwrote {}: run cargo fmt", path.display());
     }
-    // S3 reports 98.2 % and no error.
-    if generated && (machine_success < 98.2 || net_errors > 0) {
+    // S3 reports 98.2 % and no error. What is carried has to do as well with new people, though it
+    // may reject a pose.
+    if generated && (machine_success < 98.2 || net_errors > 0 || worst < 98.2) {
         return Err(format!(
-            "S3 has 98.2 % and 0 errors, here it is {machine_success:.2} % and {net_errors}"
+            "S3 has 98.2 % and 0 errors, here it is {machine_success:.2} % and {net_errors}; of new \
+             people {worst:.2} % are right"
         )
         .into());
     }
