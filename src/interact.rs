@@ -656,11 +656,12 @@ pub enum Drive {
 }
 
 /// What a state asks for in a situation. Forward and backward are a dead man's switch: they last no
-/// longer than the gesture, the master and the camera's picture.
+/// longer than the gesture, the master and the camera's picture, and forward no nearer to anybody than
+/// `forward_distance` (m).
 //= interact.INV-1
 //= interact.INV-3
 #[must_use]
-pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: bool) -> Drive {
+pub fn drive(state: &State, now: &Situation, forward_distance: f32, rear_sensing: bool) -> Drive {
     if now.stop_shown || !now.camera {
         return Drive::Rest;
     }
@@ -670,7 +671,7 @@ pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: 
         State::Traverse(path) => Drive::Along(path),
         State::Master => match now.order {
             Some(order) if order.gesture == Some(Gesture::Forward) => {
-                if order.nearest_ahead > settings.forward_distance {
+                if order.nearest_ahead > forward_distance {
                     Drive::Forward(order.bearing)
                 } else {
                     Drive::Rest
@@ -1397,7 +1398,8 @@ impl<const N: usize> Law<N> for Interact {
             self.dismiss();
         }
         self.advance(next, view.now);
-        let asked = drive(&self.state, &situation, &self.settings, self.rear_sensing);
+        let limit = self.settings.forward_distance;
+        let asked = drive(&self.state, &situation, limit, self.rear_sensing);
         self.advice(asked, view)
     }
 
