@@ -178,18 +178,17 @@ pub fn frames_are_borne_out() {
         gesture: any_gesture(),
         meant: any_side(),
     };
-    let taken = frame.commissioned(&trial).is_ok();
-    assert!(
-        !taken
-            || law::borne_out(
-                frame.left(trial.lateral) > 0.0,
-                trial.stood == Side::Left,
-                frame.side(trial.gesture) == Some(Side::Left),
-                trial.meant == Side::Left,
-            )
-    );
-    kani::cover!(taken, "borne out");
-    kani::cover!(!taken && trial.lateral > 1.0, "not borne out");
+    if frame.commissioned(&trial).is_ok() {
+        assert!(law::borne_out(
+            frame.left(trial.lateral) > 0.0,
+            trial.stood == Side::Left,
+            frame.side(trial.gesture) == Some(Side::Left),
+            trial.meant == Side::Left,
+        ));
+        kani::cover!(true, "borne out");
+    } else {
+        kani::cover!(trial.lateral > 1.0, "not borne out");
+    }
 }
 
 /// Left is the camera's, and orders mean the robot's sides.
