@@ -16,13 +16,17 @@ use sidestep::arcos::{self, HostCommand, Receiver, SonarReadings, StandardInform
 use sidestep::avoid::Avoid;
 use sidestep::config::Config;
 use sidestep::controller::Controller;
+use sidestep::decide::{self, Decide};
+use sidestep::edge::{self, Edge, EdgeConfig, PlannedEdge};
 use sidestep::escape::Escape;
+use sidestep::interact;
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{BaseStatus, Observation, OdometrySample, SonarSample};
 use sidestep::preset;
 use sidestep::quantity::Instant;
 use sidestep::ring::{Placement, Ring};
 use sidestep::shield::Shield;
+use sidestep::valley::{Person, Scene};
 use sidestep::view::{Memory, View};
 use std::borrow::Cow;
 use std::hint::black_box;
@@ -98,6 +102,24 @@ const CASES: &[Case] = &[
         let config = config();
         law(Escape::new(Avoid::new(config), config, ring(&config)))
     }),
+    case("law: decide round avoid (S2)", || {
+        let config = config();
+        let settings = decide::Settings::new(decide::Parameters::USUAL, &config);
+        let settings = settings.expect("the defaults fit the preset");
+        law(Decide::new(
+            Avoid::new(config),
+            config,
+            ring(&config),
+            settings,
+        ))
+    }),
+    case("law: edge (S4)", || {
+        let config = config();
+        let edge = EdgeConfig::new(edge::PAPER).expect("the paper's values are good");
+        let way = PlannedEdge::new(Vector2::new(0.0, 0.0), GOAL).expect("an edge");
+        law(Edge::new(config, edge, ring(&config), [way]).expect("a route"))
+    }),
+    case("S3: valleys between six people", valleys),
     case("shield: 16 sonars", shield),
     case("controller: view, avoid, shield", controller),
     Case {
@@ -153,6 +175,22 @@ fn law(mut law: impl Law<16> + 'static) -> Work {
     let views = views();
     Box::new(move |i| {
         black_box(law.advise(black_box(&views[i % views.len()])));
+    })
+}
+
+/// What S3's law asks for while it plans.
+fn valleys() -> Work {
+    let settings = interact::Settings::new(interact::USUAL, &config());
+    let settings = settings.expect("the usual values fit the preset");
+    let people: Vec<Person> = (0..6)
+        .map(|i| {
+            let (depth, lateral) = (2.0 + 0.3 * (i % 3) as f32, 0.5 * i as f32 - 1.2);
+            Person::at(depth, lateral, 0.22).expect("a place")
+        })
+        .collect();
+    let scene = Scene::new(&people).expect("six people");
+    Box::new(move |_| {
+        black_box(settings.geometry().valleys(black_box(&scene)));
     })
 }
 

@@ -7,7 +7,6 @@ use super::view::{PIONEER, any_reading};
 use sidestep::edge::{self, Detection, EdgeConfig, Finding, PAPER, Situation, State};
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
-use sidestep::quantity::Length;
 use sidestep_spec::edge as law;
 
 /// The paper's numbers: checked as this is compiled.
@@ -96,7 +95,6 @@ pub fn far_is_harmless() {
 
 /// The detector on two sonars with any readings, any bits as cosines, at any distance.
 //= edge.INV-6
-//= edge.INV-7
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(4))]
@@ -105,45 +103,49 @@ pub fn blind_is_never_clear() {
     let (cosines, distance): ([f32; 2], f32) = (kani::any(), kani::any());
     let detection = edge::detect(&sonar, &cosines, distance, &CONFIG);
     let heard = |reading| !matches!(reading, SonarReading::Stale | SonarReading::Invalid);
+    let clear = matches!(detection, Detection::Clear { .. });
     assert!(law::blind_is_not_clear(
-        matches!(detection, Detection::Clear { .. }),
+        clear,
         distance,
         CONFIG.distance_max,
         heard(sonar[0]) && heard(sonar[1])
     ));
-    if let Some(closeness) = edge::closeness(distance, &CONFIG) {
-        let value = |i: usize| {
-            let range = match sonar[i] {
-                SonarReading::Echo(range) => range,
-                SonarReading::TooNear => Length::ZERO,
-                _ => return 0.0,
-            };
-            edge::projection(edge::nearness(range, &CONFIG), closeness, cosines[i])
-        };
-        let projections = [value(0), value(1)];
-        let (reported, at) = match detection {
-            Detection::Obstacle { sonar, greatest } => (Some(greatest), sonar),
-            _ => (None, 0),
-        };
-        assert!(law::obstacle_is_greatest(
-            reported,
-            &projections,
-            CONFIG.threshold
-        ));
-        assert!(at < 2);
-        kani::cover!(
-            reported.is_some() && at == 1,
-            "the second sonar is decisive"
-        );
-        kani::cover!(
-            reported.is_some() && !heard(sonar[0]),
-            "although the first is not heard"
-        );
-        kani::cover!(
-            matches!(detection, Detection::Blind(_)),
-            "blind on the edge"
-        );
+    let obstacle = matches!(detection, Detection::Obstacle { .. });
+    kani::cover!(clear, "clear");
+    kani::cover!(obstacle && !heard(sonar[0]), "one is heard, and near");
+    kani::cover!(
+        matches!(detection, Detection::Blind(_)) && distance == 0.0,
+        "blind on the edge"
+    );
+}
+
+/// What is reported of any three projections.
+//= edge.INV-7
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(5))]
+pub fn greatest_projection_decides() {
+    let projections: [f32; 3] = kani::any();
+    for projection in projections {
+        kani::assume((0.0..=10.0).contains(&projection));
     }
+    let silent = if kani::any() { Some(0) } else { None };
+    let detection = edge::judge(&projections, silent, CONFIG.threshold);
+    let (reported, at) = match detection {
+        Detection::Obstacle { sonar, greatest } => (Some(greatest), sonar),
+        _ => (None, 0),
+    };
+    assert!(at < 3);
+    assert!(law::obstacle_is_greatest(
+        reported,
+        &projections,
+        CONFIG.threshold
+    ));
+    kani::cover!(reported.is_some() && at == 2, "the last sonar is decisive");
+    kani::cover!(
+        reported.is_none() && projections[1] == CONFIG.threshold,
+        "at the threshold"
+    );
 }
 
 /// Steering is bounded for any bits as error and speed, on an edge and on a leg.

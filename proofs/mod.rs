@@ -8,6 +8,10 @@
 //! Solver and unwinding are chosen per harness; none takes a minute.
 
 #![allow(
+    clippy::needless_range_loop,
+    reason = "plain indexed loops are what closes in the solver"
+)]
+#![allow(
     dead_code,
     reason = "stand-ins are named only in attributes, which Kani alone reads"
 )]

@@ -2,7 +2,7 @@
 
 #[cfg(not(kani))]
 use super::kani;
-use sidestep::valley::{self, Geometry, Heading, Person, Region, Scene};
+use sidestep::valley::{Geometry, Person, Region, Scene};
 use sidestep_spec::valley as law;
 
 /// Any person there is, made either way; the square root by its contract.
@@ -37,49 +37,13 @@ fn scene(people: &[Person]) -> Scene {
     }
 }
 
-/// A way that is admitted keeps clear of everybody: any two people, any robot and sensor, any
-/// direction and length. The clearance is that of the check, which is `valley::ROUNDING` more than must
-/// be kept. That the predicate is what clearance means is theorem 14a of `spec/smt`.
-//= valley.INV-1
-//= valley.INV-6
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(8))]
-#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-#[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
-#[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
-pub fn admitted_way_is_clear() {
-    let geometry = any_geometry();
-    let people = [any_person(), any_person()];
-    let scene = scene(&people);
-    let heading = Heading::new(kani::any());
-    let length = kani::any();
-    if geometry.admits(&scene, heading, length) {
-        for person in people {
-            assert!(law::keeps_clear(
-                [person.lateral(), person.depth()],
-                geometry.clearance(&person) + valley::ROUNDING,
-                [heading.sine(), heading.cosine()],
-                length,
-            ));
-        }
-        assert!(law::is_defined(
-            heading.sine(),
-            geometry.view_sine(),
-            length
-        ));
-        kani::cover!(heading.sine() > 0.1, "to the right");
-        kani::cover!(people[0].range() < 3.0, "past somebody near");
-    }
-}
-
 /// Any direction that a search may find, or none.
 fn any_direction(_: &Geometry, _: &Scene, _: usize, _: &Region) -> Option<f32> {
     if kani::any() { Some(kani::any()) } else { None }
 }
 
-/// An accepted valley was wide enough and is admitted, whatever direction was found for it: beside any
-/// person, for any robot and sensor.
+/// An accepted valley was wide enough, and its direction and length are defined, whatever direction was
+/// found for it: beside any person, for any robot and sensor.
 //= valley.INV-2
 //= valley.INV-6
 #[cfg_attr(kani, kani::proof)]
@@ -96,7 +60,7 @@ fn any_direction(_: &Geometry, _: &Scene, _: usize, _: &Region) -> Option<f32> {
         crate::proofs::valley::any_direction
     )
 )]
-pub fn accepted_valley_is_admitted() {
+pub fn accepted_valley_is_defined() {
     let geometry = any_geometry();
     let scene = scene(&[any_person()]);
     let index = if kani::any() { 0 } else { 1 };
@@ -112,7 +76,6 @@ pub fn accepted_valley_is_admitted() {
         assert!(valley.is_none() || region.is_wide_enough());
     }
     if let Some(valley) = valley {
-        assert!(geometry.admits(&scene, valley.heading, valley.length));
         assert!(law::is_defined(
             valley.heading.sine(),
             geometry.view_sine(),

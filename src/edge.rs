@@ -12,7 +12,7 @@ use crate::config::Config;
 use crate::law::{Advice, Law};
 use crate::math;
 use crate::observation::SonarReading;
-use crate::quantity::{Angle, Instant, Length, OutOfRange, in_range};
+use crate::quantity::{Angle, Instant, Length, OutOfRange, in_range, within};
 use crate::ring::{Placement, Ring};
 use crate::shield::milliseconds;
 use crate::view::{Pose, View};
@@ -139,7 +139,8 @@ pub fn closeness(distance: f32, config: &EdgeConfig) -> Option<f32> {
 #[must_use]
 pub fn projection(nearness: f32, closeness: f32, cosine: f32) -> f32 {
     let along = if cosine > 0.0 { cosine.min(1.0) } else { 0.0 };
-    nearness * closeness * along
+    // Rounding keeps this bound by itself; like this a solver sees it.
+    (nearness * closeness * along).min(10.0 * closeness)
 }
 
 /// The actual edge (AE): from the robot's centre to the end of the planned edge.
@@ -231,7 +232,6 @@ pub enum Blindness {
 /// An obstacle is one although another sonar may be stale; a ring is only [`Detection::Clear`] if
 /// every sonar is heard and the robot is within d_max of the edge.
 //= edge.INV-6
-//= edge.INV-7
 #[must_use]
 pub fn detect<const N: usize>(
     sonar: &[SonarReading; N],
@@ -242,8 +242,7 @@ pub fn detect<const N: usize>(
     let Some(closeness) = closeness(distance, config) else {
         return Detection::Blind(Blindness::OffEdge);
     };
-    let mut greatest = 0.0;
-    let mut at = 0;
+    let mut projections = [0.0; N];
     let mut silent = None;
     for i in 0..N {
         let range = match sonar[i] {
@@ -256,12 +255,28 @@ pub fn detect<const N: usize>(
                 continue;
             }
         };
-        let projection = projection(nearness(range, config), closeness, cosines[i]);
-        if projection > greatest {
-            (greatest, at) = (projection, i);
+        projections[i] = projection(nearness(range, config), closeness, cosines[i]);
+    }
+    judge(&projections, silent, config.threshold)
+}
+
+/// S4 step 5: the greatest of the projections decides, if it exceeds the threshold; otherwise a sonar
+/// that is not heard makes the detector blind.
+//= edge.INV-7
+#[must_use]
+pub fn judge<const N: usize>(
+    projections: &[f32; N],
+    silent: Option<usize>,
+    threshold: f32,
+) -> Detection {
+    let mut greatest = 0.0;
+    let mut at = 0;
+    for (i, projection) in projections.iter().enumerate() {
+        if *projection > greatest {
+            (greatest, at) = (*projection, i);
         }
     }
-    if greatest > config.threshold {
+    if greatest > threshold {
         return Detection::Obstacle {
             sonar: at,
             greatest,
@@ -1105,7 +1120,9 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
             self.events.rotate_left(1);
             EVENTS - 1
         });
-        self.events[place] = Some(event);
+        if let Some(slot) = self.events.get_mut(place) {
+            *slot = Some(event);
+        }
     }
 
     fn edge_now(&self) -> Option<PlannedEdge> {
@@ -1143,7 +1160,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
                 };
                 if self.way_back.is_none_or(|leg| reached(&leg)) {
                     // Half a right angle on, towards the edge.
-                    let along = (place.x + place.y.abs()).clamp(0.0, edge.length());
+                    let along = (place.x + place.y.abs()).max(0.0).min(edge.length());
                     let target = edge.to_world(Vector2::new(along, 0.0));
                     self.way_back = PlannedEdge::new(pose.position, target).ok();
                 }
@@ -1175,8 +1192,8 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
     fn hindrance(&self, view: &View<N>, cosines: &[f32; N]) -> Option<usize> {
         let mut hindrance = None;
         let mut least = f32::INFINITY;
-        for (i, cosine) in cosines.iter().enumerate() {
-            let range = match view.sonar[i] {
+        for (i, (cosine, reading)) in cosines.iter().zip(&view.sonar).enumerate() {
+            let range = match reading {
                 SonarReading::Echo(range) => range.get(),
                 SonarReading::TooNear => 0.0,
                 _ => continue,
@@ -1192,11 +1209,13 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
 
     /// Where a sonar's vector ends, in the odometry frame.
     fn vector_end(&self, view: &View<N>, sonar: usize) -> Vector2<f32> {
-        let range = match view.sonar[sonar] {
-            SonarReading::Echo(range) => range.get(),
+        let Some(at) = self.ring.sonars().get(sonar) else {
+            return view.pose.position;
+        };
+        let range = match view.sonar.get(sonar) {
+            Some(SonarReading::Echo(range)) => range.get(),
             _ => 0.0,
         };
-        let at = &self.ring.sonars()[sonar];
         view.pose.to_world(at.position + at.axis * range)
     }
 
@@ -1400,8 +1419,8 @@ pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice 
     }
     let share = (1.0 - error.abs() / error_max).clamp(0.0, 1.0);
     Advice {
-        speed: (speed.clamp(0.0, config.speed_max)) * if share > 0.0 { share } else { 0.0 },
-        turn_rate: turn_rate.clamp(-turn_rate_max, turn_rate_max),
+        speed: speed.max(0.0).min(config.speed_max) * if share > 0.0 { share } else { 0.0 },
+        turn_rate: within(turn_rate, turn_rate_max),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::config::{Config, Field, is_count, parameters};
 use crate::gesture::{self, Gesture, PEOPLE_MAX};
 use crate::law::{Advice, Law};
 use crate::math;
-use crate::quantity::{Angle, Instant, OutOfRange, Speed, in_range};
+use crate::quantity::{Angle, Instant, OutOfRange, Speed, in_range, within};
 use crate::shield::milliseconds;
 use crate::valley::{Geometry, Person, Scene, Side};
 use crate::view::{Pose, View};
@@ -656,11 +656,12 @@ pub enum Drive {
 }
 
 /// What a state asks for in a situation. Forward and backward are a dead man's switch: they last no
-/// longer than the gesture, the master and the camera's picture.
+/// longer than the gesture, the master and the camera's picture, and forward no nearer to anybody than
+/// `forward_distance` (m).
 //= interact.INV-1
 //= interact.INV-3
 #[must_use]
-pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: bool) -> Drive {
+pub fn drive(state: &State, now: &Situation, forward_distance: f32, rear_sensing: bool) -> Drive {
     if now.stop_shown || !now.camera {
         return Drive::Rest;
     }
@@ -670,7 +671,7 @@ pub fn drive(state: &State, now: &Situation, settings: &Settings, rear_sensing: 
         State::Traverse(path) => Drive::Along(path),
         State::Master => match now.order {
             Some(order) if order.gesture == Some(Gesture::Forward) => {
-                if order.nearest_ahead > settings.forward_distance {
+                if order.nearest_ahead > forward_distance {
                     Drive::Forward(order.bearing)
                 } else {
                     Drive::Rest
@@ -934,16 +935,19 @@ impl Interact {
         let radius = measured.unwrap_or(0.0).max(self.settings.person_radius);
         let place = pose.to_world(Vector2::new(self.settings.camera_forward + depth, left));
         let slot = self.slot(someone.id, place);
+        let Some(held) = self.tracks.get_mut(slot) else {
+            return;
+        };
         // A number that is there twice is nobody's: neither is taken at their gesture.
-        let twice = self.tracks[slot].is_some_and(|track| track.in_sight && track.id == someone.id);
-        let position = match &self.tracks[slot] {
+        let twice = held.is_some_and(|track| track.in_sight && track.id == someone.id);
+        let position = match &*held {
             // The mean of where they were and where they are seen, which halves the noise.
             Some(track) if !twice && math::norm(track.position - place) < GATE => {
                 (track.position + place) / 2.0
             }
             _ => place,
         };
-        self.tracks[slot] = Some(Track {
+        *held = Some(Track {
             id: someone.id,
             position,
             radius,
@@ -969,7 +973,8 @@ impl Interact {
                     if !track.in_sight && off < GATE && near.is_none_or(|(_, least)| off < least) {
                         near = Some((i, off));
                     }
-                    if self.tracks[oldest].is_some_and(|other| track.seen < other.seen) {
+                    let other = self.tracks.get(oldest).copied().flatten();
+                    if other.is_some_and(|other| track.seen < other.seen) {
                         oldest = i;
                     }
                 }
@@ -1243,7 +1248,8 @@ impl Interact {
         let mut list = [Person::at(0.0, 0.0, self.settings.person_radius).ok()?; PEOPLE_MAX];
         let mut i = 0;
         while i < count {
-            list[i] = people[i]?;
+            let (slot, person) = (list.get_mut(i)?, people.get(i)?);
+            *slot = (*person)?;
             i += 1;
         }
         let scene = Scene::new(list.get(..count)?).ok()?;
@@ -1337,7 +1343,7 @@ impl Interact {
             let error = heading.minus(view.pose.heading).get();
             Advice {
                 speed: speed * unseen * (1.0 - error.abs() / FRAC_PI_2).clamp(0.0, 1.0),
-                turn_rate: (config.heading_gain * error).clamp(-limit, limit),
+                turn_rate: within(config.heading_gain * error, limit),
             }
         };
         match drive {
@@ -1392,7 +1398,8 @@ impl<const N: usize> Law<N> for Interact {
             self.dismiss();
         }
         self.advance(next, view.now);
-        let asked = drive(&self.state, &situation, &self.settings, self.rear_sensing);
+        let limit = self.settings.forward_distance;
+        let asked = drive(&self.state, &situation, limit, self.rear_sensing);
         self.advice(asked, view)
     }
 

@@ -268,11 +268,14 @@ impl Geometry {
         if count == 0 || index > count {
             return None;
         }
-        Some(match (index > 0, index < count) {
-            (true, true) => self.between(&scene.people[index - 1], &scene.people[index]),
-            (false, _) => self.beside(&scene.people[0], -1.0),
-            (true, false) => self.beside(&scene.people[index - 1], 1.0),
-        })
+        let left = index.checked_sub(1).and_then(|i| scene.people.get(i));
+        let right = scene.people.get(index).filter(|_| index < count);
+        match (left, right) {
+            (Some(left), Some(right)) => Some(self.between(left, right)),
+            (None, Some(right)) => Some(self.beside(right, -1.0)),
+            (Some(left), None) => Some(self.beside(left, 1.0)),
+            (None, None) => None,
+        }
     }
 
     /// The region between two neighbours: E1, E2, E10 to E14.
@@ -344,7 +347,9 @@ impl Geometry {
         let (mut least, mut most) = (-self.view_sine, self.view_sine);
         let mut i = 0;
         while i < scene.count {
-            let person = &scene.people[i];
+            let Some(person) = scene.people.get(i) else {
+                break;
+            };
             let clearance = self.clearance(person) + PLANNED;
             // Who is farther away than the way leads does not matter to it.
             if person.range - clearance < reach {
@@ -364,7 +369,7 @@ impl Geometry {
         if let Some(right) = &region.right {
             least = least.max(-self.outermost(right)?);
         }
-        (least <= most).then(|| region.sine.clamp(least, most))
+        (least <= most).then(|| region.sine.max(least).min(most))
     }
 
     /// How far the way through a region leads at most, m, whatever its direction.
@@ -412,7 +417,9 @@ impl Geometry {
         }
         let mut i = 0;
         while i < scene.count {
-            let person = &scene.people[i];
+            let Some(person) = scene.people.get(i) else {
+                break;
+            };
             let clearance = self.clearance(person) + ROUNDING;
             if !keeps_clear([person.lateral, person.depth], clearance, heading, length) {
                 return false;

@@ -1151,7 +1151,7 @@ fn differences(case: &Value, outputs: &Outputs, core: bool) -> Vec<String> {
             scale
         };
         // N1 is the difference of two ranges, which f32 keeps to seven digits of the larger.
-        let scale = if *name == "N1" {
+        let scale = if name.rsplit('.').next() == Some("N1") {
             scale.max(10.0)
         } else {
             scale

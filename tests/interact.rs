@@ -139,7 +139,7 @@ proptest! {
     fn machine_keeps_its_promises(state in state(), now in situation(), rear in any::<bool>()) {
         let settings = settings();
         let next = interact::next_state(&state, &now);
-        let asked = interact::drive(&next, &now, &settings, rear);
+        let asked = interact::drive(&next, &now, settings.forward_distance, rear);
         let demanded = now.stop_shown || !now.camera;
         prop_assert!(law::stop_is_obeyed(demanded, asked == Drive::Rest));
         // From every state in which the robot moves a stop leads to one in which it does not, or to

@@ -134,7 +134,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         only_stochastic_rows_pass, expected_losses_are_between,
         ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move;
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
-        blind_is_never_clear, steering_is_bounded, machine_stops_and_looks;
+        blind_is_never_clear, greatest_projection_decides, steering_is_bounded,
+        machine_stops_and_looks;
     gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
         unlikeness_is_finite, winner_beats_all,
         outputs_spell_the_class, gesture_counts_after_enough_frames;
@@ -142,8 +143,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
-    interact: machine_keeps_its_promises, advice_is_within_limits;
-    valley: admitted_way_is_clear, accepted_valley_is_admitted, share_is_a_share,
+    interact: machine_keeps_its_promises, frames_are_borne_out, advice_is_within_limits;
+    valley: accepted_valley_is_defined, share_is_a_share,
         order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
     shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,

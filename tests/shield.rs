@@ -844,6 +844,26 @@ fn backs_off_where_it_looks() {
     assert_eq!(fastest_back::<8>(), 0);
 }
 
+/// With room all round a robot does what it is advised, either way, after it has come up to it.
+#[test]
+fn a_free_robot_does_as_advised() {
+    let (config, ring) = pioneer_with::<16>();
+    for (speed, turn_rate) in [(0.2, 0.5), (0.2, -0.5), (0.0, 0.5), (0.3, 0.0)] {
+        let (mut shield, mut memory) = (Shield::new(&config), Memory::default());
+        let mut told = (0, 0);
+        for tick in 0..30 {
+            let observation = in_order(10_000 + 100 * tick, [5.0; 16]);
+            let view = memory.update(&observation, [5.0, 0.0].into(), &ring, &config);
+            let view = view.expect("odometry");
+            shield.assess(&view, &ring);
+            let verdict = shield.admit(Advice { speed, turn_rate }, &view, &ring);
+            told = (verdict.command.speed(), verdict.command.turn_rate());
+        }
+        let advised = ((speed * 1000.0) as i32, (turn_rate * 1000.0) as i32);
+        assert_eq!(told, advised);
+    }
+}
+
 /// Only what is a matter of distance lets the robot turn on the spot.
 //= shield.INV-5
 #[test]

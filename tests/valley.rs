@@ -1,4 +1,5 @@
 //! Chapter `valley`: S3's equations, what is accepted, and its Tables IV and V.
+#![allow(clippy::approx_constant, reason = "3.14 m is a measured width")]
 
 mod common;
 

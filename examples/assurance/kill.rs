@@ -99,10 +99,11 @@ fn mutants(file: &str) -> Outcome<Vec<Value>> {
     Ok(serde_json::from_slice(&output.stdout)?)
 }
 
-/// The harnesses whose code includes the module: those that take a few seconds, then the rest.
-fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> [Vec<String>; 2] {
+/// The harnesses whose code includes the module: the chapter's own first, then the others', and of
+/// each those that take a few seconds first.
+fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> [Vec<String>; 4] {
     let (_, verdicts) = ledger::read_ledger(harnesses);
-    let mut rounds = [Vec::new(), Vec::new()];
+    let mut rounds = [const { Vec::new() }; 4];
     for (name, harness) in harnesses {
         if !harness.modules.contains(module) {
             continue;
@@ -111,7 +112,8 @@ fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> [Vec<String>; 
             .get(name)
             .and_then(|verdict| verdict.seconds.parse::<f64>().ok());
         let slow = seconds.is_none_or(|seconds| seconds > 10.0);
-        rounds[usize::from(slow)].push(name.clone());
+        let foreign = !name.starts_with(&format!("{module}::"));
+        rounds[2 * usize::from(foreign) + usize::from(slow)].push(name.clone());
     }
     rounds
 }

@@ -40,7 +40,7 @@ pub const FUNCTIONS: [Function; 4] = [
         nearness: |_, result| Some(f64::from(result).abs()),
         nearness_is: "greatest |result| (at most 1)",
         exact: |angle| angle.is_finite().then(|| angle.sin()),
-        budget: 1.0,
+        budget: 0.51,
     },
     //= math.INV-2 (every input)
     Function {
@@ -55,7 +55,7 @@ pub const FUNCTIONS: [Function; 4] = [
         },
         nearness_is: "greatest ½ − result within 60° (at most 1e-6)",
         exact: |angle| angle.is_finite().then(|| angle.cos()),
-        budget: 1.0,
+        budget: 0.51,
     },
     //= math.INV-3 (every input)
     Function {

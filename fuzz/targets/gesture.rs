@@ -140,12 +140,10 @@ fn claims(bytes: &mut Bytes) {
     let scores: [f32; PAIRS] = std::array::from_fn(|_| bytes.number());
     if scores.iter().all(|score| score.is_finite()) {
         let mut table = [[0.0; Gesture::COUNT]; Gesture::COUNT];
-        let mut score = scores.iter().map(|score| f64::from(*score));
-        for i in 0..Gesture::COUNT {
-            for j in i + 1..Gesture::COUNT {
-                let score = score.next().expect("a score for each pair");
-                (table[i][j], table[j][i]) = (score, -score);
-            }
+        let pairs = (0..Gesture::COUNT).flat_map(|i| (i + 1..Gesture::COUNT).map(move |j| (i, j)));
+        for ((i, j), score) in pairs.zip(&scores) {
+            let score = f64::from(*score);
+            (table[i][j], table[j][i]) = (score, -score);
         }
         let nearest = gesture::winner(&scores);
         assert!(nearest.margin < 0.0 || law::beats_all(nearest.gesture.index(), &table, 0.0));

@@ -164,7 +164,7 @@ fn machine(settings: &Settings, bytes: &mut Bytes) {
         };
         let rear_sensing = more & 64 != 0;
         let next = interact::next_state(&state, &now);
-        let asked = interact::drive(&next, &now, settings, rear_sensing);
+        let asked = interact::drive(&next, &now, settings.forward_distance, rear_sensing);
         let demanded = now.stop_shown || !now.camera;
         assert!(law::stop_is_obeyed(demanded, asked == Drive::Rest));
         let found = match state {
@@ -277,6 +277,7 @@ fn ticks(settings: &Settings, config: &Config, frame: Commissioned, bytes: &mut 
                 stuck: false,
             }],
             obstacle: None,
+            ahead: Length::MAX,
             room: [Length::MAX; 2],
             beside: [Length::MAX; 2],
             base: BaseStatus {

@@ -48,7 +48,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let outcome = run.simulation.outcome();
         nearest = nearest.min(outcome.minimum_clearance_while_driving.obstacles);
         if !run.is_home {
-            println!("seed {seed}: not home\n{}", run.report);
+            println!(
+                "seed {seed}: not home: {:?}, {:?}\n{}",
+                run.summary.ending, run.summary.tally.stops, run.report
+            );
             if let Some(folder) = &folder {
                 let notes: Vec<String> = run
                     .happenings

@@ -170,7 +170,9 @@ fn completed<const S: usize>(mut parts: [u32; S]) -> [u32; S] {
     }
     let one = u64::from(ONE);
     if sum <= one {
-        parts[greatest] += (one - sum) as u32;
+        if let Some(part) = parts.get_mut(greatest) {
+            *part += (one - sum) as u32;
+        }
         return parts;
     }
     let mut excess = sum - one;
@@ -179,7 +181,9 @@ fn completed<const S: usize>(mut parts: [u32; S]) -> [u32; S] {
         *part -= taken as u32;
         excess -= taken;
     };
-    take(&mut parts[greatest]);
+    if let Some(part) = parts.get_mut(greatest) {
+        take(part);
+    }
     // Never needed for sums that are off by rounding alone.
     for part in &mut parts {
         take(part);

@@ -282,7 +282,7 @@ impl<const A: usize, const S: usize> DistanceLoss<A, S> {
         let span = i64::from(self.far_distance) - i64::from(self.near_distance);
         // Rounded down: no obstacle counts as farther than it is.
         let beyond = i64::from(millimetres_down(distance.get())) - i64::from(self.near_distance);
-        let beyond = beyond.clamp(0, span);
+        let beyond = beyond.max(0).min(span);
         let mut table = self.near;
         for action in 0..A {
             for state in 0..S {

@@ -576,8 +576,8 @@ impl<L, const N: usize> Decide<L, N> {
                 (farthest, most) = (Some(i), away(held));
             }
         }
-        if let Some(i) = farthest {
-            self.places[i] = Some(place);
+        if let Some(slot) = farthest.and_then(|i| self.places.get_mut(i)) {
+            *slot = Some(place);
         }
     }
 
@@ -621,7 +621,7 @@ impl<L, const N: usize> Decide<L, N> {
         let silence = Length::metres(self.config.sonar_range_max).unwrap_or(Length::MAX);
         let mut readings = view.sonar;
         let mut doubted: Option<f32> = None;
-        for (i, reading) in readings.iter_mut().enumerate() {
+        for (reading, at) in readings.iter_mut().zip(self.ring.sonars()) {
             let SonarReading::Echo(range) = *reading else {
                 continue;
             };
@@ -630,8 +630,10 @@ impl<L, const N: usize> Decide<L, N> {
                 range: range.get(),
             };
             // What is not kept in mind, being far away or one too many, is taken as it is.
-            let source = self.source(&sound, &self.ring.sonars()[i], view);
-            let Some(Place { belief, .. }) = source.and_then(|k| self.places[k]) else {
+            let source = self.source(&sound, at, view);
+            let Some(Place { belief, .. }) =
+                source.and_then(|k| self.places.get(k).copied().flatten())
+            else {
                 continue;
             };
             if self.settings.respond(&belief, range) == Response::Continue {
@@ -724,7 +726,10 @@ impl<L: Law<N>, const N: usize> Law<N> for Decide<L, N> {
                 pose,
                 speed: view.speed,
                 sighting: None,
-                still: view.hazard[track.sonar()].class == Class::Still,
+                still: view
+                    .hazard
+                    .get(track.sonar())
+                    .is_some_and(|hazard| hazard.class == Class::Still),
             };
             track.obstacle(&look, &self.config)
         });

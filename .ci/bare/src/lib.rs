@@ -7,6 +7,11 @@ use nalgebra::Vector2;
 use sidestep::avoid::Avoid;
 use sidestep::config::Config;
 use sidestep::controller::Controller;
+use sidestep::decide::Decide;
+use sidestep::edge::{Edge, PlannedEdge};
+use sidestep::escape::Escape;
+use sidestep::interact::Interact;
+use sidestep::law::Law;
 use sidestep::observation::Observation;
 use sidestep::preset;
 use sidestep::ring::{Placement, Ring};
@@ -54,4 +59,45 @@ pub extern "C" fn sidestep_tick(
     let command = controller.tick(observation).command;
     *turn_rate = command.turn_rate();
     command.speed()
+}
+
+/// A tick of any law under the shield.
+fn tick<L: Law<3>>(controller: &mut Controller<L, 3>, observation: &Observation<3>) -> i32 {
+    controller.tick(observation).command.speed()
+}
+
+/// The same for S2's decision round S1's law. Returns the speed in mm/s.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick_decide(
+    controller: &mut Controller<Decide<Avoid, 3>, 3>,
+    observation: &Observation<3>,
+) -> i32 {
+    tick(controller, observation)
+}
+
+/// The same for S4's law on a route of four edges.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick_edge(
+    controller: &mut Controller<Edge<[PlannedEdge; 4], 3>, 3>,
+    observation: &Observation<3>,
+) -> i32 {
+    tick(controller, observation)
+}
+
+/// The same for S3's law.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick_interact(
+    controller: &mut Controller<Interact, 3>,
+    observation: &Observation<3>,
+) -> i32 {
+    tick(controller, observation)
+}
+
+/// The same for a law with a way out of where it is stuck.
+#[unsafe(no_mangle)]
+pub extern "C" fn sidestep_tick_escape(
+    controller: &mut Controller<Escape<Avoid, 3>, 3>,
+    observation: &Observation<3>,
+) -> i32 {
+    tick(controller, observation)
 }

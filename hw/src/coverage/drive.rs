@@ -6,7 +6,7 @@
 
 use super::floor::Floor;
 use super::progress::{Progress, Report};
-use super::roadmap::{PassageId, Roadmap};
+use super::roadmap::{self, PassageId, Roadmap};
 use crate::config::RobotConfig;
 use crate::demo::{Summary, run_watched};
 use crate::edge::{Driver, in_world, robot_for, route};
@@ -136,6 +136,10 @@ fn legs(
     }
     for (i, step) in progress.plan().enumerate() {
         let mut course = roadmap.passage(step.passage).course(step.reversed);
+        if i == 0 && !cuts_corner && (course[0] - at).norm() > BESIDE {
+            edges.extend(route(&floor.start, &[at, course[0]])?);
+            ends.push(None);
+        }
         if i == 0 && cuts_corner {
             course = behind(&course, CUT);
             edges.extend(route(&floor.start, &[at, course[0]])?);
@@ -260,33 +264,36 @@ fn rest(legs: &Legs, leg: usize, at: Vector2<f32>) -> Result<Option<Legs>, OutOf
     Ok(Some(Legs { edges, ends }))
 }
 
-/// From a place in a passage back to where it begins: the corners that have been passed, the last one
-/// first. `begun` is where the leg begins on which the way was found blocked.
-///
-/// A robot that has gone aside may be nearer to an earlier leg than to that one, and is not to go on to
-/// where it begins.
-fn way_back(course: &[Point], begun: Point, at: Point) -> Vec<Point> {
-    let passed = course
-        .iter()
-        .position(|corner| (corner - begun).norm() < THERE)
-        .unwrap_or_default();
-    let far = |leg: &[Point]| {
-        let along = leg[1] - leg[0];
-        let part = (at - leg[0]).dot(&along) / along.norm_squared();
-        (leg[0] + along * part.clamp(0.0, 1.0) - at).norm()
-    };
-    let legs = course.windows(2).take(passed + 1).enumerate();
-    let nearest = legs.min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
-    let mut back: Vec<Point> = course[..=nearest.map_or(0, |(leg, _)| leg)].to_vec();
-    while back.len() > 1
-        && back
-            .last()
-            .is_some_and(|corner| (corner - at).norm() < BESIDE)
-    {
-        back.pop();
+/// Where the robot believes to have been since it was last at a junction, m.
+struct Track(Vec<Point>);
+
+impl Track {
+    /// The robot is at a junction.
+    fn begin(&mut self, at: Point) {
+        self.0 = vec![at];
     }
-    back.reverse();
-    back
+
+    fn go_on(&mut self, at: Point) {
+        let near = |place: &Point| (at - place).norm() < 2.0 * THERE;
+        match self.0.iter().position(near) {
+            // It has been here before: what was in between is no way to anywhere.
+            Some(before) => self.0.truncate(before + 1),
+            None => self.0.push(at),
+        }
+    }
+
+    /// The way back by which it came, which can be driven since it has been; without what is right
+    /// beside the robot.
+    fn back(&mut self, at: Point) -> Vec<Point> {
+        let nearest = self.0.iter().position(|place| (place - at).norm() < BESIDE);
+        if let Some(nearest) = nearest {
+            self.0.truncate(nearest.max(1));
+        }
+        let mut back = roadmap::legs(&self.0, THERE);
+        back.reverse();
+        back.retain(|place| (place - at).norm() > BESIDE);
+        back
+    }
 }
 
 /// Drives a coverage in virtual time; `tell` hears of everything as it happens, with the time in ms.
@@ -331,6 +338,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
     let mut happenings = Vec::new();
     let mut scans = Vec::new();
     let mut point = floor.start.position;
+    let mut track = Track(vec![floor.start.position]);
     let mut tries = 0;
     let mut failure: Option<Box<dyn Error>> = None;
     let (summary, simulation) =
@@ -355,6 +363,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                     }
                 }
             }
+            track.go_on(believed(pilot, floor));
             while let Some(event) = pilot.law_mut().next_event() {
                 match event {
                     Event::Covered(leg) => {
@@ -363,6 +372,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                                 happens(Happening::Covered(step.passage));
                             }
                             progress.done();
+                            track.begin(believed(pilot, floor));
                             tries = 0;
                         }
                     }
@@ -376,11 +386,6 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                         }
                     }
                     Event::Blocked(leg) => {
-                        // A leg of the route, which the law cannot have left.
-                        let Some(ahead) = pilot.law_mut().route().get(leg).copied() else {
-                            continue;
-                        };
-                        let begun = in_world(&floor.start, ahead.start());
                         let step = progress.next();
                         let on_step = legs_now.ends.get(leg).is_some_and(Option::is_some);
                         let from = believed(pilot, floor);
@@ -388,8 +393,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                         let mut back = Vec::new();
                         if on_step && let Some(step) = step {
                             happens(Happening::Blocked(step.passage, point));
-                            let course = roadmap.passage(step.passage).course(step.reversed);
-                            back = way_back(&course, begun, from);
+                            back = track.back(from);
                             progress.blocked();
                             tries = 0;
                         } else if is_near {
@@ -405,12 +409,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                         } else {
                             // The rest of the way back once more.
                             tries += 1;
-                            let rest = pilot.law_mut().route().iter().zip(&legs_now.ends);
-                            back = rest
-                                .skip(leg)
-                                .take_while(|(_, end)| end.is_none())
-                                .map(|(edge, _)| in_world(&floor.start, edge.end()))
-                                .collect();
+                            back = track.back(from);
                         }
                         let cuts_corner = !on_step && is_near;
                         let next = legs(floor, &progress, roadmap, from, &back, cuts_corner);
@@ -439,6 +438,7 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
             if pilot.law_mut().state() == State::OffEdge
                 && let Some(view) = pilot.latest().and_then(|decision| decision.view)
             {
+                let view_point = in_world(&floor.start, view.pose.position);
                 match rest(&legs_now, leg, view.pose.position) {
                     Ok(None) => {}
                     Ok(Some(next)) => {
@@ -447,6 +447,8 @@ pub fn run(job: &Job<'_>, mut tell: impl FnMut(u64, &Happening)) -> Result<Run, 
                                 happens(Happening::Covered(step.passage));
                             }
                             progress.done();
+                            track.begin(view_point);
+                            tries = 0;
                         }
                         legs_now = next;
                         if legs_now.edges.is_empty() {

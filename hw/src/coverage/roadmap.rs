@@ -536,7 +536,7 @@ fn spaced(points: &[Point]) -> Vec<Point> {
 
 /// The fewest points of a way, its ends among them, whose legs pass all others within `deviation`
 /// (Ramer, Douglas and Peucker).
-fn legs(points: &[Point], deviation: f64) -> Vec<Point> {
+pub(super) fn legs(points: &[Point], deviation: f64) -> Vec<Point> {
     let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Vec::new();
     };
