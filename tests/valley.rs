@@ -414,6 +414,7 @@ macro_rules! rows {
 }
 
 /// S3 Tables IV and V.
+#[allow(clippy::approx_constant, reason = "a distance of the paper, not π")]
 const TABLES: &[Row] = rows! {
     "IV.1" "right" 0.2 0.4 [25.4, -3.7], None, -3.7 3.03 34.9 0.167 0.335 18.3 true;
     "IV.2" "right" 0.25 0.3 [1.16, 31.1], None, 1.16 2.95 38.7 0.215 0.256 13.8 false;
