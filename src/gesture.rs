@@ -64,6 +64,24 @@ impl Skeleton {
             self.right_wrist,
         ]
     }
+
+    /// Its joints in the order of [`Self::joints`], if every one is tracked and somewhere.
+    ///
+    /// # Errors
+    /// [`Rejection::NotTracked`] if a joint is missing, [`Rejection::OutOfRange`] if a coordinate is
+    /// not finite, farther away than 10 m, or behind the camera.
+    //= gesture.INV-3
+    pub fn whole(&self) -> Result<[Point; 7], Rejection> {
+        Ok([
+            judged("neck", self.neck)?,
+            judged("left shoulder", self.left_shoulder)?,
+            judged("right shoulder", self.right_shoulder)?,
+            judged("left elbow", self.left_elbow)?,
+            judged("right elbow", self.right_elbow)?,
+            judged("left wrist", self.left_wrist)?,
+            judged("right wrist", self.right_wrist)?,
+        ])
+    }
 }
 
 /// What a camera's program reports at one time: untrusted.
@@ -291,15 +309,16 @@ impl Features {
     /// say that somebody is turned away by more than 55°.
     //= gesture.INV-1
     //= gesture.INV-2
-    //= gesture.INV-3
     pub fn of(skeleton: &Skeleton) -> Result<Self, Rejection> {
-        let neck = judged("neck", skeleton.neck)?;
-        let left_shoulder = judged("left shoulder", skeleton.left_shoulder)?;
-        let right_shoulder = judged("right shoulder", skeleton.right_shoulder)?;
-        let left_elbow = judged("left elbow", skeleton.left_elbow)?;
-        let right_elbow = judged("right elbow", skeleton.right_elbow)?;
-        let left_wrist = judged("left wrist", skeleton.left_wrist)?;
-        let right_wrist = judged("right wrist", skeleton.right_wrist)?;
+        let [
+            neck,
+            left_shoulder,
+            right_shoulder,
+            left_elbow,
+            right_elbow,
+            left_wrist,
+            right_wrist,
+        ] = skeleton.whole()?;
 
         // Lengths in space do not change when somebody turns.
         let left = distance(left_shoulder, left_elbow) + distance(left_elbow, left_wrist);

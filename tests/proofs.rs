@@ -136,7 +136,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
         blind_is_never_clear, greatest_projection_decides, steering_is_bounded,
         machine_stops_and_looks;
-    gesture: features_are_bounded, untracked_joint_is_rejected, scores_are_finite, accepted_pose_is_clear,
+    gesture: features_are_bounded, skeleton_is_whole_or_rejected, scores_are_finite, accepted_pose_is_clear,
         unlikeness_is_finite, winner_beats_all,
         outputs_spell_the_class, gesture_counts_after_enough_frames;
     kinematics: wheels_are_limited, wheel_rates_are_finite;
