@@ -2,7 +2,7 @@
 
 #[cfg(not(kani))]
 use super::kani;
-use sidestep::valley::{Geometry, Person, Region, Scene};
+use sidestep::valley::{Geometry, Person, Scene};
 use sidestep_spec::valley as law;
 
 /// Any person there is, made either way; the square root by its contract.
@@ -34,55 +34,6 @@ fn scene(people: &[Person]) -> Scene {
     match Scene::new(people) {
         Ok(scene) => scene,
         Err(_) => unreachable!(),
-    }
-}
-
-/// Any direction that a search may find, or none.
-fn any_direction(_: &Geometry, _: &Scene, _: usize, _: &Region) -> Option<f32> {
-    if kani::any() { Some(kani::any()) } else { None }
-}
-
-/// An accepted valley was wide enough, and its direction and length are defined, whatever direction was
-/// found for it: beside any person, for any robot and sensor.
-//= valley.INV-2
-//= valley.INV-6
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(8))]
-#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-#[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
-#[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
-#[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
-#[cfg_attr(
-    kani,
-    kani::stub(
-        crate::valley::Geometry::direction,
-        crate::proofs::valley::any_direction
-    )
-)]
-pub fn accepted_valley_is_defined() {
-    let geometry = any_geometry();
-    let scene = scene(&[any_person()]);
-    let index = if kani::any() { 0 } else { 1 };
-    let region = geometry.region(&scene, index);
-    let valley = geometry.valley(&scene, index);
-    assert!(region.is_some());
-    if let Some(region) = region {
-        assert!(law::decided_by_width(
-            region.is_wide_enough(),
-            region.available,
-            region.least
-        ));
-        assert!(valley.is_none() || region.is_wide_enough());
-    }
-    if let Some(valley) = valley {
-        assert!(law::is_defined(
-            valley.heading.sine(),
-            geometry.view_sine(),
-            valley.length
-        ));
-        kani::cover!(index == 0, "on the left");
-        kani::cover!(index == 1, "on the right");
     }
 }
 

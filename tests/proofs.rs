@@ -144,7 +144,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         values_are_ranges_or_missing, bearings_are_in_order;
     failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
     interact: machine_keeps_its_promises, frames_are_borne_out, advice_is_within_limits;
-    valley: accepted_valley_is_defined, share_is_a_share,
+    valley: share_is_a_share,
         order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
     shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
