@@ -14,6 +14,7 @@ use crate::ring::{Ring, Sonar};
 use crate::shield::{millimetres_down, millimetres_up, milliseconds};
 use crate::track::{self, Obstacle, Track};
 use crate::wall::{ACROSS, Wall};
+use core::f32::consts::PI;
 use nalgebra::Vector2;
 
 /// Where the robot is and which way it looks, in the odometry frame.
@@ -271,10 +272,11 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             )
         });
-        let mut agrees = [false; N];
-        for (agrees, memory) in agrees.iter_mut().zip(&self.sonar) {
-            *agrees = memory.agreed > 0;
+        let mut agreed = [0; N];
+        for (agreed, memory) in agreed.iter_mut().zip(&self.sonar) {
+            *agreed = memory.agreed;
         }
+        let agrees = agreed.map(|agreed| agreed > 0);
         let walls = Wall::beside(&sonar, &agrees, ring, config);
         let witnesses = self.witnesses(&sonar, observation, pose, ring, config);
         // What was there in the tick before has been looked at.
@@ -291,6 +293,7 @@ impl<const N: usize> Memory<N> {
                 pose,
                 witness: Witness {
                     on_wall: is_wall(sonar[i], &ring.sonars()[i], &walls, config),
+                    beside_still: is_beside_still(i, &sonar, &agreed, ring, config),
                     ..witnesses[i]
                 },
             };
@@ -450,6 +453,8 @@ pub struct Witness {
     pub known_still: bool,
     /// The range is that of a wall that others hear as well.
     pub on_wall: bool,
+    /// What is heard is no nearer than what the sonar next to it hears, and that stands still.
+    pub beside_still: bool,
 }
 
 impl EchoMemory {
@@ -531,14 +536,17 @@ impl EchoMemory {
         }
 
         // Something that comes nearer faster than the bound, and a quarter more, adds up; another
-        // thing, which a jump or a turn brings into the cone, does not.
+        // thing, which a jump or a turn brings into the cone, does not. Nor does the side of a box
+        // that the next sonar hears the front of: it slides through the edge of this cone at any
+        // speed as the robot drives.
         let [ahead, back] = [0, 1].map(|i| grown(latest.odometer.way[i], look.odometer.way[i]));
         let turned = grown(latest.odometer.turned, look.odometer.turned);
         let swept = ahead + back + range * turned / 1000;
         let nearer = latest.range - range - GRAZING * swept;
         let one_thing = turned <= SAME_DIRECTION && nearer <= way(FASTEST, gap) + tolerance;
+        let slides = swept > 0 && look.witness.beside_still;
         let excess = nearer - way(config.obstacle_speed_max * 1.25, gap);
-        if one_thing && excess > 0 {
+        if one_thing && !slides && excess > 0 {
             self.excess = self.excess.saturating_add(excess);
             self.excessive = self.excessive.saturating_add(1);
         } else {
@@ -681,6 +689,31 @@ fn is_wall(
     };
     let wall = &walls[usize::from(sonar.axis.y < 0.0)];
     wall.is_some_and(|wall| wall.explains(range.get(), sonar, config))
+}
+
+/// A sonar next to sonar `i` hears a thing that is no farther away than what `i` hears, and that has
+/// agreed with the robot's own motion for longer than it takes to call a thing too fast. Next to it is
+/// what leaves no wider gap between the cones than may be anywhere.
+fn is_beside_still<const N: usize>(
+    i: usize,
+    sonar: &[SonarReading; N],
+    agreed: &[u32; N],
+    ring: &Ring<N>,
+    config: &Config,
+) -> bool {
+    let SonarReading::Echo(range) = sonar[i] else {
+        return false;
+    };
+    let reach = range.get() + config.still_tolerance;
+    let apart = 2.0 * config.sonar_half_angle + config.blind_angle_max;
+    let least = math::cos(apart.min(PI));
+    (0..N).any(|j| {
+        let SonarReading::Echo(other) = sonar[j] else {
+            return false;
+        };
+        let next = ring.sonars()[i].axis.dot(&ring.sonars()[j].axis) >= least;
+        j != i && agreed[j] > config.confirm_samples as u32 && other.get() <= reach && next
+    })
 }
 
 /// The range of a judged reading in millimetres, rounded down; none if no echo came back.
