@@ -14,7 +14,6 @@ use crate::ring::{Ring, Sonar};
 use crate::shield::{millimetres_down, millimetres_up, milliseconds};
 use crate::track::{self, Obstacle, Track};
 use crate::wall::{ACROSS, Wall};
-use core::f32::consts::PI;
 use nalgebra::Vector2;
 
 /// Where the robot is and which way it looks, in the odometry frame.
@@ -272,11 +271,12 @@ impl<const N: usize> Memory<N> {
                 milliseconds(config.sonar_age_max),
             )
         });
-        let mut agreed = [0; N];
-        for (agreed, memory) in agreed.iter_mut().zip(&self.sonar) {
-            *agreed = memory.agreed;
+        let mut agrees = [false; N];
+        let mut still = [false; N];
+        for (i, memory) in self.sonar.iter().enumerate() {
+            agrees[i] = memory.agreed > 0;
+            still[i] = memory.is_still(now, config);
         }
-        let agrees = agreed.map(|agreed| agreed > 0);
         let walls = Wall::beside(&sonar, &agrees, ring, config);
         let witnesses = self.witnesses(&sonar, observation, pose, ring, config);
         // What was there in the tick before has been looked at.
@@ -293,7 +293,7 @@ impl<const N: usize> Memory<N> {
                 pose,
                 witness: Witness {
                     on_wall: is_wall(sonar[i], &ring.sonars()[i], &walls, config),
-                    beside_still: is_beside_still(i, &sonar, &agreed, ring, config),
+                    beside_still: is_beside_still(i, &sonar, &still, ring, config),
                     ..witnesses[i]
                 },
             };
@@ -453,7 +453,7 @@ pub struct Witness {
     pub known_still: bool,
     /// The range is that of a wall that others hear as well.
     pub on_wall: bool,
-    /// What is heard is no nearer than what the sonar next to it hears, and that stands still.
+    /// What is heard is no nearer than a still thing that a sonar next to it hears.
     pub beside_still: bool,
 }
 
@@ -691,13 +691,12 @@ fn is_wall(
     wall.is_some_and(|wall| wall.explains(range.get(), sonar, config))
 }
 
-/// A sonar next to sonar `i` hears a thing that is no farther away than what `i` hears, and that has
-/// agreed with the robot's own motion for longer than it takes to call a thing too fast. Next to it is
-/// what leaves no wider gap between the cones than may be anywhere.
+/// A sonar next to sonar `i` hears a still thing that is no farther away than what `i` hears. Next to it
+/// is one if no other looks between them.
 fn is_beside_still<const N: usize>(
     i: usize,
     sonar: &[SonarReading; N],
-    agreed: &[u32; N],
+    still: &[bool; N],
     ring: &Ring<N>,
     config: &Config,
 ) -> bool {
@@ -705,14 +704,15 @@ fn is_beside_still<const N: usize>(
         return false;
     };
     let reach = range.get() + config.still_tolerance;
-    let apart = 2.0 * config.sonar_half_angle + config.blind_angle_max;
-    let least = math::cos(apart.min(PI));
+    let heading = ring.sonars()[i].heading;
+    let turn = |j: usize| ring.sonars()[j].heading.minus(heading).get();
+    let is_next = |j: usize| {
+        let between = |k: usize| turn(k) * turn(j) > 0.0 && turn(k).abs() < turn(j).abs();
+        j != i && !(0..N).any(between)
+    };
     (0..N).any(|j| {
-        let SonarReading::Echo(other) = sonar[j] else {
-            return false;
-        };
-        let next = ring.sonars()[i].axis.dot(&ring.sonars()[j].axis) >= least;
-        j != i && agreed[j] > config.confirm_samples as u32 && other.get() <= reach && next
+        let nearer = matches!(sonar[j], SonarReading::Echo(other) if other.get() <= reach);
+        still[j] && nearer && is_next(j)
     })
 }
 
