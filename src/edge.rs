@@ -28,6 +28,8 @@ pub struct Parameters {
     pub distance_max: f32,
     /// A projection above this is an obstacle: the obstacle detection threshold value, 0 to 10.
     pub threshold: f32,
+    /// No side wall is nearer to an edge than half of this, the width W of W1, m.
+    pub corridor_width: f32,
     /// Width that must be free to go round an obstacle, m.
     pub safe_path_width: f32,
     /// Heading error against the actual edge above which the robot does not follow, rad (ours).
@@ -50,6 +52,7 @@ pub const PAPER: Parameters = Parameters {
     range_max: 0.6,
     distance_max: 0.3,
     threshold: 3.0,
+    corridor_width: 1.2,
     safe_path_width: 0.6,
     heading_error_max: 0.872_664_6,
     end_distance: 0.1,
@@ -84,6 +87,7 @@ impl EdgeConfig {
             in_range("range_max", p.range_max, 0.1, 5.0, "m"),
             in_range("distance_max", p.distance_max, 0.05, 2.0, "m"),
             in_range("threshold", p.threshold, 0.1, 10.0, "of 10"),
+            in_range("corridor_width", p.corridor_width, 0.2, 10.0, "m"),
             in_range("safe_path_width", p.safe_path_width, 0.1, 3.0, "m"),
             in_range("heading_error_max", p.heading_error_max, 0.1, 1.5, "rad"),
             in_range("end_distance", p.end_distance, 0.02, 1.0, "m"),
@@ -258,6 +262,28 @@ pub fn detect<const N: usize>(
         projections[i] = projection(nearness(range, config), closeness, cosines[i]);
     }
     judge(&projections, silent, config.threshold)
+}
+
+/// The detector beside the edge (ours): [`detect`], and what no side wall can give (`inside`, see
+/// [`unexplained`]) is judged as if the robot were on the edge. N2 is there to let walls count less;
+/// what is no wall it would only hide until it is near (ER-S4-08).
+//= edge.INV-14
+#[must_use]
+pub fn detect_inside<const N: usize>(
+    sonar: &[SonarReading; N],
+    inside: &[SonarReading; N],
+    cosines: &[f32; N],
+    distance: f32,
+    config: &EdgeConfig,
+) -> Detection {
+    let detection = detect(sonar, cosines, distance, config);
+    if matches!(detection, Detection::Obstacle { .. }) {
+        return detection;
+    }
+    match detect(inside, cosines, 0.0, config) {
+        obstacle @ Detection::Obstacle { .. } => obstacle,
+        _ => detection,
+    }
 }
 
 /// S4 step 5: the greatest of the projections decides, if it exceeds the threshold; otherwise a sonar
@@ -1170,22 +1196,35 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
         }
     }
 
-    /// What the sonars hear, less what the sides of a gap explain.
-    fn heard(&self, view: &View<N>, edge: &PlannedEdge) -> [SonarReading; N] {
-        match (self.state, self.sub_route) {
-            (State::SubRoute, Some(way)) => {
-                let half_angle = self.config.sonar_half_angle;
-                unexplained(
-                    &view.sonar,
-                    &self.ring,
-                    &view.pose,
-                    edge,
-                    &way.gap,
-                    half_angle,
-                )
-            }
-            _ => view.sonar,
-        }
+    /// What is on the way that the robot is `distance` beside. On a sub-route the sides of the gap are
+    /// known, and are nearer than walls may be; elsewhere they may be half a corridor's width off.
+    fn detect(
+        &self,
+        view: &View<N>,
+        edge: &PlannedEdge,
+        cosines: &[f32; N],
+        distance: f32,
+    ) -> Detection {
+        let gap = match (self.state, self.sub_route) {
+            (State::SubRoute, Some(way)) => Some(way.gap),
+            _ => None,
+        };
+        let half_width = 0.5 * self.edge.corridor_width;
+        let sides = gap.unwrap_or(Gap {
+            right: -half_width,
+            left: half_width,
+        });
+        let half_angle = self.config.sonar_half_angle;
+        let inside = unexplained(
+            &view.sonar,
+            &self.ring,
+            &view.pose,
+            edge,
+            &sides,
+            half_angle,
+        );
+        let heard = if gap.is_some() { &inside } else { &view.sonar };
+        detect_inside(heard, &inside, cosines, distance, &self.edge)
     }
 
     /// What holds up a robot that was to go along `line`: the echo that lies most along it.
@@ -1365,9 +1404,10 @@ fn check_route(route: &[PlannedEdge], config: &EdgeConfig) -> Result<(), OutOfRa
     Ok(())
 }
 
-/// The readings, where an echo that may come from a side of the gap says no more than that there is
-/// nothing nearer. On a sub-route the walls are nearer than W1 allows for, but it is known where:
-/// the gap was seen to be free, and only what is certainly inside it contradicts that.
+/// The readings, where an echo that may come from a side of the gap, for some ray of its cone, says no
+/// more than that there is nothing nearer: what is left is certainly inside. The gap is a corridor, or
+/// what a sub-route leads through, where walls are nearer than W1 allows for, but were seen.
+//= edge.INV-15
 #[must_use]
 pub fn unexplained<const N: usize>(
     sonar: &[SonarReading; N],
@@ -1493,10 +1533,7 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Law<N> for Edge<R, N> {
         // A robot that turns on the spot first asks what is ahead when it looks there.
         let looks_along = heading_error <= self.edge.heading_error_max;
         let detection = match actual {
-            Some(actual) => {
-                let heard = self.heard(view, &edge);
-                detect(&heard, &cosines, actual.distance, &self.edge)
-            }
+            Some(actual) => self.detect(view, &edge, &cosines, actual.distance),
             None => Detection::Blind(Blindness::AtEnd),
         };
         let detected = match detection {

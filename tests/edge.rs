@@ -238,6 +238,71 @@ proptest! {
         prop_assert!(law::obstacle_is_greatest(reported, &projections, config.threshold));
     }
 
+    //= edge.INV-6
+    //= edge.INV-14
+    #[test]
+    fn what_no_wall_gives_counts_in_full(
+        readings in prop::collection::vec(any_reading(), 16),
+        cosines in prop::array::uniform8(-1.0_f32..1.0),
+        distance in prop_oneof![4 => -0.35_f32..0.35, 1 => common::any_f32()],
+    ) {
+        let config = paper();
+        let sonar: [SonarReading; 8] = std::array::from_fn(|i| readings[i]);
+        let inside: [SonarReading; 8] = std::array::from_fn(|i| readings[8 + i]);
+        let detection = edge::detect_inside(&sonar, &inside, &cosines, distance, &config);
+        let on_the_edge: [f32; 8] = std::array::from_fn(|i| match inside[i] {
+            SonarReading::Echo(range) => {
+                edge::projection(edge::nearness(range, &config), 1.0, cosines[i])
+            }
+            SonarReading::TooNear => edge::projection(10.0, 1.0, cosines[i]),
+            _ => 0.0,
+        });
+        let obstacle = matches!(detection, Detection::Obstacle { .. });
+        prop_assert!(law::inside_counts_in_full(obstacle, &on_the_edge, config.threshold));
+        // Otherwise it is S4's.
+        let alone = edge::detect(&sonar, &cosines, distance, &config);
+        let found = matches!(alone, Detection::Obstacle { .. });
+        prop_assert!(detection == alone || (obstacle && !found));
+        let silent = |reading: &SonarReading| {
+            matches!(reading, SonarReading::Stale | SonarReading::Invalid)
+        };
+        let clear = matches!(detection, Detection::Clear { .. });
+        let heard = !sonar.iter().any(silent);
+        prop_assert!(law::blind_is_not_clear(clear, distance, config.distance_max, heard));
+    }
+
+    //= edge.INV-15
+    #[test]
+    fn sides_are_explained_wherever_they_are_heard(
+        (x, y, degrees) in (0.0_f32..3.0, -0.5_f32..0.5, -180.0_f32..180.0),
+        ranges in prop::array::uniform8(0.05_f32..1.5),
+        (right, left) in (-1.0_f32..-0.2, 0.2_f32..1.0),
+        half_angle in 0.02_f32..0.5,
+    ) {
+        let along = edge([0.0, 0.0], [3.0, 0.0]);
+        let here = pose(x, y, degrees);
+        let ring = ring();
+        let rest = edge::unexplained(
+            &ranges.map(echo),
+            &ring,
+            &here,
+            &along,
+            &Gap { right, left },
+            half_angle,
+        );
+        for (i, sonar) in ring.sonars().iter().enumerate() {
+            let face = f64::from(here.to_world(sonar.position).y);
+            let axis = f64::from(here.heading.get() + sonar.heading.get());
+            // Where every ray of the cone ends, across the edge.
+            let places: Vec<f64> = (-50..=50)
+                .map(|k| axis + f64::from(half_angle) * f64::from(k) / 50.0)
+                .map(|ray| face + f64::from(ranges[i]) * ray.sin())
+                .collect();
+            let is_left = matches!(rest[i], SonarReading::Echo(_));
+            prop_assert!(law::left_is_inside(is_left, &places, right.into(), left.into()));
+        }
+    }
+
     //= edge.INV-8
     #[test]
     fn steering_is_bounded(
@@ -569,6 +634,14 @@ fn walls_stay_under_their_bound() {
                 let Detection::Clear { greatest: p } = found else {
                     panic!("{found:?} at {offset} mm, {heading}°, end {end} mm");
                 };
+                // None of them passes for something else.
+                let sides = Gap {
+                    right: -0.5 * config.corridor_width,
+                    left: 0.5 * config.corridor_width,
+                };
+                let inside = edge::unexplained(&sonar, &ring, &here, &along, &sides, 0.2618);
+                let heard = |reading: &SonarReading| matches!(reading, SonarReading::Echo(_));
+                assert!(!inside.iter().any(heard), "{offset} mm, {heading}°");
                 greatest = greatest.max(p);
             }
         }
@@ -620,6 +693,33 @@ fn detection_shortens_off_the_edge() {
     }
     assert!(range(266.7, 50.0).is_none() && range(266.5, 50.0).is_some());
     assert!(range(301.0, 10.0).is_none());
+}
+
+/// ER-S4-08, mended: what no wall can give is detected beside the edge from as far away as on it, what
+/// may be a wall as S4 has it.
+//= edge.INV-14
+#[test]
+fn beside_the_edge_only_walls_count_less() {
+    let (ring, config) = (ring(), paper());
+    let along = edge([0.0, 0.0], [3.0, 0.0]);
+    let sides = Gap {
+        right: -0.6,
+        left: 0.6,
+    };
+    // 300 mm beside the edge, looking towards it or away from it; 400 mm to what the middle sonars hear.
+    let found = |degrees: f32| {
+        let here = pose(1.0, 0.3, degrees);
+        let mut sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        (sonar[3], sonar[4]) = (echo(0.4), echo(0.4));
+        let inside = edge::unexplained(&sonar, &ring, &here, &along, &sides, 0.2618);
+        let actual = ActualEdge::new(&here, &along).expect("an actual edge");
+        let cosines = actual.cosines(&ring);
+        let alone = edge::detect(&sonar, &cosines, 0.3, &config);
+        assert!(matches!(alone, Detection::Clear { .. }), "{alone:?}");
+        edge::detect_inside(&sonar, &inside, &cosines, 0.3, &config)
+    };
+    assert!(matches!(found(-10.0), Detection::Obstacle { .. }));
+    assert!(matches!(found(45.0), Detection::Clear { .. }));
 }
 
 /// ER-S4-09: no sonar looks straight ahead. A thin thing there is not detected with cones of 10°

@@ -30,6 +30,7 @@ pub fn run(data: &[u8]) {
             range_max: bytes.number(),
             distance_max: bytes.number(),
             threshold: bytes.number(),
+            corridor_width: bytes.number(),
             safe_path_width: bytes.number(),
             heading_error_max: bytes.number(),
             end_distance: bytes.number(),
@@ -135,6 +136,22 @@ fn equations(config: &EdgeConfig, bytes: &mut Bytes) {
     assert!(
         closeness.is_none() || law::obstacle_is_greatest(reported, &projections, config.threshold)
     );
+    let inside: [SonarReading; 4] = std::array::from_fn(|_| reading(bytes));
+    let on_the_edge: [f32; 4] = std::array::from_fn(|i| {
+        let range = match inside[i] {
+            SonarReading::Echo(range) => range,
+            SonarReading::TooNear => Length::ZERO,
+            _ => return 0.0,
+        };
+        edge::projection(edge::nearness(range, config), 1.0, cosines[i])
+    });
+    let detection = edge::detect_inside(&sonar, &inside, &cosines, distance, config);
+    let obstacle = matches!(detection, Detection::Obstacle { .. });
+    assert!(law::inside_counts_in_full(
+        obstacle,
+        &on_the_edge,
+        config.threshold
+    ));
     let base = base();
     let advice = edge::steer(
         bytes.number(),

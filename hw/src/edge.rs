@@ -636,7 +636,9 @@ pub struct Corridors {
     pub walls_detected: u64,
     /// The box was detected, with 300 mm or more before the sonar's face.
     pub boxes_before_300: u64,
-    /// It was detected nearer than that.
+    /// It was nearer when the robot began, which did not set off.
+    pub boxes_at_start: u64,
+    /// It was detected nearer than that by a robot that had driven there.
     pub boxes_nearer: u64,
     /// The shield had stopped the robot before the box was detected.
     pub boxes_by_shield: u64,
@@ -665,12 +667,16 @@ impl Corridors {
             .happenings
             .iter()
             .find(|happening| !matches!(happening.event, Event::Covered(_)));
+        let begun = course.corridor.scenario.start.position;
+        let driven = |to: &Pose| (to.position - begun).norm() > 0.001;
         match decisive.map(|happening| (happening.event, happening.heard)) {
             Some((Event::Detected(..), Some((body, distance)))) => {
                 if is_wall(body) {
                     self.walls_detected += 1;
                 } else if distance >= 0.3 {
                     self.boxes_before_300 += 1;
+                } else if !decisive.is_some_and(|happening| driven(&happening.pose)) {
+                    self.boxes_at_start += 1;
                 } else {
                     self.boxes_nearer += 1;
                 }
@@ -696,6 +702,7 @@ impl Corridors {
             covered: self.covered + other.covered,
             walls_detected: self.walls_detected + other.walls_detected,
             boxes_before_300: self.boxes_before_300 + other.boxes_before_300,
+            boxes_at_start: self.boxes_at_start + other.boxes_at_start,
             boxes_nearer: self.boxes_nearer + other.boxes_nearer,
             boxes_by_shield: self.boxes_by_shield + other.boxes_by_shield,
             held_by_wall: self.held_by_wall + other.held_by_wall,

@@ -249,6 +249,20 @@ pub fn obstacle_is_greatest(reported: Option<f32>, projections: &[f32], threshol
     }
 }
 
+/// edge.INV-14: where what no side wall can give exceeds the threshold as it would on the edge, an
+/// obstacle is reported.
+#[must_use]
+pub fn inside_counts_in_full(obstacle: bool, on_the_edge: &[f32], threshold: f32) -> bool {
+    obstacle || on_the_edge.iter().all(|p| *p <= threshold)
+}
+
+/// edge.INV-15: an echo that is left as one that no side can give comes from between the sides, for
+/// every ray of its cone; `places` across the edge.
+#[must_use]
+pub fn left_is_inside(is_left: bool, places: &[f64], right: f64, left: f64) -> bool {
+    !is_left || places.iter().all(|y| (right..=left).contains(y))
+}
+
 /// edge.INV-8: advice is finite, its speed in [0, v_max] and its turn rate in [−ω_max, ω_max].
 #[must_use]
 pub fn advice_in_range(speed: f32, turn_rate: f32, speed_max: f32, turn_rate_max: f32) -> bool {
