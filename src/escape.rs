@@ -25,6 +25,8 @@ const ATTEMPT: u64 = 8_000;
 const WAY: f32 = 0.6;
 /// Range, in metres, that counts: more is no better.
 const FAR: f32 = 2.0;
+/// With this much room, in metres, a way is open.
+const OPEN: f32 = 1.0;
 /// The way has to be free by this much more than a stop demands, in metres.
 const BEYOND: f32 = 0.1;
 /// How much worse a direction is, in metres, for having been tried in vain.
@@ -127,9 +129,9 @@ impl<L, const N: usize> Escape<L, N> {
         room
     }
 
-    /// There is all the room that counts in the direction of the goal.
+    /// There is room in the direction of the goal.
     fn goal_is_open(&self, view: &View<N>) -> bool {
-        self.room(view, view.goal.heading.minus(view.pose.heading)) >= FAR
+        self.room(view, view.goal.heading.minus(view.pose.heading)) >= OPEN
     }
 
     /// What an attempt asks for, or none if it is over.
@@ -149,7 +151,7 @@ impl<L, const N: usize> Escape<L, N> {
         }
         let error = attempt.heading.minus(view.pose.heading).get();
         attempt.driving |= error.abs() <= self.config.alignment;
-        let limit = self.config.turn_rate_max / 2.0;
+        let limit = self.config.turn_rate_max;
         let turn_rate = within(self.config.heading_gain * error, limit);
         if attempt.driving {
             return Some(Advice {

@@ -244,12 +244,13 @@ proptest! {
         let room = has_room(limits, &hazard, &closing, &motion, twist);
         prop_assert!(!fits || room, "{plan:?}");
         if fits {
+            let (bound, left) = left_for_turn(limits, &hazard, &closing, &motion, twist);
             prop_assert!(promise::turn_ends_before_contact(
                 plan.turn_rate,
                 limits.turn_acceleration(),
                 limits.reaction_time(),
-                limits.class_speed(hazard.class),
-                left_for_turn(limits, &hazard, &closing, &motion, twist),
+                bound,
+                left,
             ));
         }
     }
@@ -588,14 +589,15 @@ impl Question {
             let closing = &sonar.closing;
             let room = has_room(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(promise::admitted(speed, turn_rate, room));
+            let (bound, left) = left_for_turn(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(
                 admission.twist == Twist::REST
                     || promise::turn_ends_before_contact(
                         turn_rate,
                         limits.turn_acceleration(),
                         limits.reaction_time(),
-                        limits.class_speed(hazard.class),
-                        left_for_turn(limits, hazard, closing, &motion, admission.twist)
+                        bound,
+                        left,
                     )
             );
         }
