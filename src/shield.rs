@@ -263,19 +263,10 @@ impl Limits {
         if self.needed(hazard, closing, plan, plan.time) > there {
             return false;
         }
-        // The turn ends |ω|/α after the reaction time; both sides multiplied by α. To turn on the
-        // spot gets the robot nowhere, so it is not worth betting on a class.
-        let thing = Hazard {
-            class: if plan.way == [0; 2] {
-                Class::Unknown
-            } else {
-                hazard.class
-            },
-            ..*hazard
-        };
-        let left = there - self.needed(&thing, closing, plan, self.reaction_time);
-        let speed = i64::from(self.class_speed(thing.class));
-        1000 * speed * i64::from(plan.turn_rate) <= i64::from(self.turn_acceleration) * left
+        // The turn ends |ω|/α after the reaction time; both sides multiplied by α.
+        let left = there - self.needed(hazard, closing, plan, self.reaction_time);
+        let class_speed = i64::from(self.class_speed(hazard.class));
+        1000 * class_speed * i64::from(plan.turn_rate) <= i64::from(self.turn_acceleration) * left
     }
 
     /// SH.4: contact is possible within the stop time: t_lb = distance/closing ≤ T, with the

@@ -244,13 +244,12 @@ proptest! {
         let room = has_room(limits, &hazard, &closing, &motion, twist);
         prop_assert!(!fits || room, "{plan:?}");
         if fits {
-            let (bound, left) = left_for_turn(limits, &hazard, &closing, &motion, twist);
             prop_assert!(promise::turn_ends_before_contact(
                 plan.turn_rate,
                 limits.turn_acceleration(),
                 limits.reaction_time(),
-                bound,
-                left,
+                limits.class_speed(hazard.class),
+                left_for_turn(limits, &hazard, &closing, &motion, twist),
             ));
         }
     }
@@ -454,12 +453,7 @@ proptest! {
         let Some(plan) = guard.plan(twist.speed, twist.turn_rate, &motion) else {
             return Ok(());
         };
-        let rest = guard.plan(0, 0, &motion).map(|rest| Plan {
-            // Judged by the class that the command was judged by, which is the thing's own only for a
-            // robot with some way to go.
-            way: std::array::from_fn(|i| rest.way[i].max(plan.way[i].min(1))),
-            ..rest
-        });
+        let rest = guard.plan(0, 0, &motion);
         let fits = limits.fits(&hazard, &closing, &plan);
         prop_assert!(!fits || rest.is_some_and(|rest| limits.fits(&hazard, &closing, &rest)));
     }
@@ -594,15 +588,14 @@ impl Question {
             let closing = &sonar.closing;
             let room = has_room(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(promise::admitted(speed, turn_rate, room));
-            let (bound, left) = left_for_turn(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(
                 admission.twist == Twist::REST
                     || promise::turn_ends_before_contact(
                         turn_rate,
                         limits.turn_acceleration(),
                         limits.reaction_time(),
-                        bound,
-                        left,
+                        limits.class_speed(hazard.class),
+                        left_for_turn(limits, hazard, closing, &motion, admission.twist)
                     )
             );
         }

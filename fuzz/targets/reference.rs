@@ -2,7 +2,7 @@
 
 use sidestep::ring::Closing;
 use sidestep::shield::{Limits, Motion, Twist};
-use sidestep::view::{Class, Hazard};
+use sidestep::view::Hazard;
 use sidestep_spec::shield::Model;
 
 /// The model that a hazard falls under.
@@ -80,9 +80,8 @@ pub fn has_room(
     needed <= clearance + 1e-9 * needed
 }
 
-/// For a turn: the speed in mm/s that the thing may have, a person's if the robot turns on the spot,
-/// and what is left of the clearance, in thousandths of a millimetre, once the robot's own ways and
-/// the age are taken off.
+/// What is left of the clearance for a turn, in thousandths of a millimetre, once the robot's own
+/// ways and the age are taken off.
 #[must_use]
 pub fn left_for_turn(
     limits: &Limits,
@@ -90,15 +89,9 @@ pub fn left_for_turn(
     closing: &Closing,
     motion: &Motion,
     twist: Twist,
-) -> (i32, i64) {
-    let course = course(&model(limits, hazard), motion, twist);
-    let class = if course.fastest == [0.0; 2] {
-        Class::Unknown
-    } else {
-        hazard.class
-    };
-    let model = model(limits, &Hazard { class, ..*hazard });
+) -> i64 {
+    let model = model(limits, hazard);
+    let course = course(&model, motion, twist);
     let taken = taken(&model, hazard, closing, &course, 0.0);
-    let left = ((f64::from(hazard.clearance) - taken) * 1000.0).ceil() as i64;
-    (limits.class_speed(class), left)
+    ((f64::from(hazard.clearance) - taken) * 1000.0).ceil() as i64
 }
