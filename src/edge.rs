@@ -105,6 +105,16 @@ impl EdgeConfig {
         }
         Ok(Self { parameters })
     }
+
+    /// The corridor of W1: no side wall is between these lines along an edge.
+    #[must_use]
+    pub fn corridor(&self) -> Gap {
+        let half_width = 0.5 * self.corridor_width;
+        Gap {
+            right: -half_width,
+            left: half_width,
+        }
+    }
 }
 
 // ------------------------------------------------------------------------------ the equations
@@ -1209,19 +1219,13 @@ impl<R: AsRef<[PlannedEdge]>, const N: usize> Edge<R, N> {
             (State::SubRoute, Some(way)) => Some(way.gap),
             _ => None,
         };
-        let half_width = 0.5 * self.edge.corridor_width;
-        let sides = gap.unwrap_or(Gap {
-            right: -half_width,
-            left: half_width,
-        });
-        let half_angle = self.config.sonar_half_angle;
         let inside = unexplained(
             &view.sonar,
             &self.ring,
             &view.pose,
             edge,
-            &sides,
-            half_angle,
+            &gap.unwrap_or(self.edge.corridor()),
+            self.config.sonar_half_angle,
         );
         let heard = if gap.is_some() { &inside } else { &view.sonar };
         detect_inside(heard, &inside, cosines, distance, &self.edge)
@@ -1419,6 +1423,7 @@ pub fn unexplained<const N: usize>(
 ) -> [SonarReading; N] {
     let mut left = *sonar;
     let course = math::atan2(edge.direction().y, edge.direction().x);
+    let straight_across = math::cos(half_angle);
     for i in 0..N {
         let SonarReading::Echo(range) = sonar[i] else {
             continue;
@@ -1427,14 +1432,13 @@ pub fn unexplained<const N: usize>(
         let face = edge.to_edge(pose.to_world(at.position)).y;
         let bearing = pose.heading.get() + at.heading.get() - course;
         let across = math::sin(bearing);
+        let [one, other] = [bearing + half_angle, bearing - half_angle].map(math::sin);
         // How far across the cone reaches: to its edges, or straight across if that is inside.
         let reach = |side: f32| {
-            if side * across >= math::cos(half_angle) {
+            if side * across >= straight_across {
                 1.0
             } else {
-                let one = side * math::sin(bearing + half_angle);
-                let other = side * math::sin(bearing - half_angle);
-                one.max(other)
+                (side * one).max(side * other)
             }
         };
         let leftmost = face + range.get() * reach(1.0);

@@ -209,25 +209,14 @@ proptest! {
         let config = paper();
         let sonar: [SonarReading; 8] = std::array::from_fn(|i| readings[i]);
         let detection = edge::detect(&sonar, &cosines, distance, &config);
-        let silent = |reading: &SonarReading| {
-            matches!(reading, SonarReading::Stale | SonarReading::Invalid)
-        };
         let clear = matches!(detection, Detection::Clear { .. });
-        let heard = !sonar.iter().any(silent);
+        let heard = !sonar.iter().any(is_silent);
         prop_assert!(law::blind_is_not_clear(clear, distance, config.distance_max, heard));
         let Some(closeness) = edge::closeness(distance, &config) else {
             prop_assert_eq!(detection, Detection::Blind(Blindness::OffEdge));
             return Ok(());
         };
-        let projections: Vec<f32> = (0..8)
-            .map(|i| match sonar[i] {
-                SonarReading::Echo(range) => {
-                    edge::projection(edge::nearness(range, &config), closeness, cosines[i])
-                }
-                SonarReading::TooNear => edge::projection(10.0, closeness, cosines[i]),
-                _ => 0.0,
-            })
-            .collect();
+        let projections = projected(&sonar, closeness, &cosines, &config);
         let reported = match detection {
             Detection::Obstacle { sonar, greatest } => {
                 prop_assert_eq!(projections[sonar], greatest);
@@ -250,24 +239,15 @@ proptest! {
         let sonar: [SonarReading; 8] = std::array::from_fn(|i| readings[i]);
         let inside: [SonarReading; 8] = std::array::from_fn(|i| readings[8 + i]);
         let detection = edge::detect_inside(&sonar, &inside, &cosines, distance, &config);
-        let on_the_edge: [f32; 8] = std::array::from_fn(|i| match inside[i] {
-            SonarReading::Echo(range) => {
-                edge::projection(edge::nearness(range, &config), 1.0, cosines[i])
-            }
-            SonarReading::TooNear => edge::projection(10.0, 1.0, cosines[i]),
-            _ => 0.0,
-        });
+        let on_the_edge = projected(&inside, 1.0, &cosines, &config);
         let obstacle = matches!(detection, Detection::Obstacle { .. });
         prop_assert!(law::inside_counts_in_full(obstacle, &on_the_edge, config.threshold));
         // Otherwise it is S4's.
         let alone = edge::detect(&sonar, &cosines, distance, &config);
         let found = matches!(alone, Detection::Obstacle { .. });
         prop_assert!(detection == alone || (obstacle && !found));
-        let silent = |reading: &SonarReading| {
-            matches!(reading, SonarReading::Stale | SonarReading::Invalid)
-        };
         let clear = matches!(detection, Detection::Clear { .. });
-        let heard = !sonar.iter().any(silent);
+        let heard = !sonar.iter().any(is_silent);
         prop_assert!(law::blind_is_not_clear(clear, distance, config.distance_max, heard));
     }
 
@@ -335,9 +315,7 @@ proptest! {
             ));
             prop_assert!(law::rests(driver.state().at_rest(), advice.speed, advice.turn_rate));
             // Nothing moves while a sonar is not heard.
-            let silent = view.sonar.iter().any(|reading| {
-                matches!(reading, SonarReading::Stale | SonarReading::Invalid)
-            });
+            let silent = view.sonar.iter().any(is_silent);
             prop_assert!(!silent || advice.speed == 0.0);
             if driver.wants_scan() {
                 let scan = Scan::new(
@@ -446,6 +424,27 @@ fn check_gap(
         "{hits:?} in {gap:?}"
     );
     Ok(())
+}
+
+/// It does not say what is there.
+fn is_silent(reading: &SonarReading) -> bool {
+    matches!(reading, SonarReading::Stale | SonarReading::Invalid)
+}
+
+/// E1 to E4, sonar by sonar.
+fn projected(
+    sonar: &[SonarReading; 8],
+    closeness: f32,
+    cosines: &[f32; 8],
+    config: &EdgeConfig,
+) -> [f32; 8] {
+    std::array::from_fn(|i| match sonar[i] {
+        SonarReading::Echo(range) => {
+            edge::projection(edge::nearness(range, config), closeness, cosines[i])
+        }
+        SonarReading::TooNear => edge::projection(10.0, closeness, cosines[i]),
+        _ => 0.0,
+    })
 }
 
 fn any_reading() -> impl Strategy<Value = SonarReading> {
@@ -635,10 +634,7 @@ fn walls_stay_under_their_bound() {
                     panic!("{found:?} at {offset} mm, {heading}°, end {end} mm");
                 };
                 // None of them passes for something else.
-                let sides = Gap {
-                    right: -0.5 * config.corridor_width,
-                    left: 0.5 * config.corridor_width,
-                };
+                let sides = config.corridor();
                 let inside = edge::unexplained(&sonar, &ring, &here, &along, &sides, 0.2618);
                 let heard = |reading: &SonarReading| matches!(reading, SonarReading::Echo(_));
                 assert!(!inside.iter().any(heard), "{offset} mm, {heading}°");
@@ -702,10 +698,7 @@ fn detection_shortens_off_the_edge() {
 fn beside_the_edge_only_walls_count_less() {
     let (ring, config) = (ring(), paper());
     let along = edge([0.0, 0.0], [3.0, 0.0]);
-    let sides = Gap {
-        right: -0.6,
-        left: 0.6,
-    };
+    let sides = config.corridor();
     // 300 mm beside the edge, looking towards it or away from it; 400 mm to what the middle sonars hear.
     let found = |degrees: f32| {
         let here = pose(1.0, 0.3, degrees);

@@ -82,6 +82,15 @@ fn reading(bytes: &mut Bytes) -> SonarReading {
     }
 }
 
+/// The range of what a sonar hears, none if it hears nothing.
+fn heard(reading: &SonarReading) -> Option<Length> {
+    match reading {
+        SonarReading::Echo(range) => Some(*range),
+        SonarReading::TooNear => Some(Length::ZERO),
+        _ => None,
+    }
+}
+
 /// E1 to E4 and the detector.
 fn equations(config: &EdgeConfig, bytes: &mut Bytes) {
     let (sonar, cosines): ([SonarReading; 4], [f32; 4]) = (
@@ -97,10 +106,8 @@ fn equations(config: &EdgeConfig, bytes: &mut Bytes) {
     ));
     let mut projections = Vec::new();
     for (reading, cosine) in sonar.iter().zip(&cosines) {
-        let range = match reading {
-            SonarReading::Echo(range) => *range,
-            SonarReading::TooNear => Length::ZERO,
-            _ => continue,
+        let Some(range) = heard(reading) else {
+            continue;
         };
         let nearness = edge::nearness(range, config);
         assert!(law::nearness_in_range(
@@ -138,12 +145,9 @@ fn equations(config: &EdgeConfig, bytes: &mut Bytes) {
     );
     let inside: [SonarReading; 4] = std::array::from_fn(|_| reading(bytes));
     let on_the_edge: [f32; 4] = std::array::from_fn(|i| {
-        let range = match inside[i] {
-            SonarReading::Echo(range) => range,
-            SonarReading::TooNear => Length::ZERO,
-            _ => return 0.0,
-        };
-        edge::projection(edge::nearness(range, config), 1.0, cosines[i])
+        heard(&inside[i]).map_or(0.0, |range| {
+            edge::projection(edge::nearness(range, config), 1.0, cosines[i])
+        })
     });
     let detection = edge::detect_inside(&sonar, &inside, &cosines, distance, config);
     let obstacle = matches!(detection, Detection::Obstacle { .. });

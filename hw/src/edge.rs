@@ -668,22 +668,22 @@ impl Corridors {
             .iter()
             .find(|happening| !matches!(happening.event, Event::Covered(_)));
         let begun = course.corridor.scenario.start.position;
-        let driven = |to: &Pose| (to.position - begun).norm() > 0.001;
-        match decisive.map(|happening| (happening.event, happening.heard)) {
-            Some((Event::Detected(..), Some((body, distance)))) => {
+        let stood = |pose: &Pose| (pose.position - begun).norm() <= 0.001;
+        match decisive.map(|happening| (happening.event, happening.heard, happening.pose)) {
+            Some((Event::Detected(..), Some((body, distance)), pose)) => {
                 if is_wall(body) {
                     self.walls_detected += 1;
                 } else if distance >= 0.3 {
                     self.boxes_before_300 += 1;
-                } else if !decisive.is_some_and(|happening| driven(&happening.pose)) {
+                } else if stood(&pose) {
                     self.boxes_at_start += 1;
                 } else {
                     self.boxes_nearer += 1;
                 }
             }
             // Something was detected where nothing is: as bad as a wall.
-            Some((Event::Detected(..), None)) => self.walls_detected += 1,
-            Some((_, Some((body, _)))) if !is_wall(body) => self.boxes_by_shield += 1,
+            Some((Event::Detected(..), None, _)) => self.walls_detected += 1,
+            Some((_, Some((body, _)), _)) if !is_wall(body) => self.boxes_by_shield += 1,
             Some(_) => self.held_by_wall += 1,
             None if run.summary.tally.arrived.is_some() => {
                 self.covered += 1;
