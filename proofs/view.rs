@@ -239,6 +239,7 @@ fn any_witness() -> Witness {
         heard_there: false,
         known_still: kani::any(),
         on_wall: kani::any(),
+        beside_still: kani::any(),
     }
 }
 

@@ -88,6 +88,8 @@ parameters! {
         "How long an obstacle that is no longer seen is still believed to be there.";
     confirm_samples: "samples", 2.0, 20.0,
         "Readings in a row that it takes to believe that an obstacle recedes or has gone.";
+    appear_samples: "samples", 1.0, 2.0,
+        "Readings in a row that it takes to believe in an echo from nearer than anything can have come since the last one: 1 believes at once, 2 bears false echoes and promises no more than for what is heard twice.";
     heading_gain: "1/s", 0.1, 5.0,
         "Turn rate per radian of heading error.";
     turn_rate_max: "rad/s", 0.05, 4.0,
@@ -112,6 +114,8 @@ parameters! {
         "From the moment the sensors describe to the moment the command of the next tick takes effect, at the longest: the way of a reading to here, the time between two ticks, the way of a command, and the base's own delay.";
     still_speed_max: "m/s", 0.0, 3.0,
         "What has been seen to stand still moves no faster than this while the robot passes it.";
+    still_speed_max_turning: "m/s", 0.0, 3.0,
+        "While the robot turns on the spot, what has been seen to stand still sets off no faster than this.";
     still_samples: "samples", 2.0, 100.0,
         "Readings in a row that must agree with the robot's own motion before a thing counts as still.";
     still_tolerance: "m", 0.005, 0.5,
@@ -233,6 +237,13 @@ impl Config {
             "still_speed_max",
             p.still_speed_max,
             0.0,
+            p.obstacle_speed_max,
+            "m/s",
+        ));
+        check!(in_range(
+            "still_speed_max_turning",
+            p.still_speed_max_turning,
+            p.still_speed_max,
             p.obstacle_speed_max,
             "m/s",
         ));

@@ -1,6 +1,7 @@
 //! One tick: observation in, command out. Data flows one way.
 
 use crate::config::Config;
+use crate::decide::SecondLook;
 use crate::failsafe::{Action, StopReason};
 use crate::law::Law;
 use crate::observation::Observation;
@@ -33,6 +34,7 @@ pub struct Controller<L, const N: usize> {
     config: Config,
     ring: Ring<N>,
     goal: Vector2<f32>,
+    second_look: SecondLook<N>,
     memory: Memory<N>,
     shield: Shield,
     law: L,
@@ -55,6 +57,7 @@ impl<L: Law<N>, const N: usize> Controller<L, N> {
             config,
             ring,
             goal,
+            second_look: SecondLook::default(),
             memory: Memory::default(),
             shield: Shield::new(&config),
             law,
@@ -63,6 +66,7 @@ impl<L: Law<N>, const N: usize> Controller<L, N> {
 
     /// One tick.
     pub fn tick(&mut self, observation: &Observation<N>) -> Decision<N> {
+        let observation = &self.second_look.judged(observation, &self.config);
         let updated = self
             .memory
             .update(observation, self.goal, &self.ring, &self.config);

@@ -18,13 +18,15 @@ use nalgebra::Vector2;
 /// A robot that has not gone this far, in metres, has not moved.
 const MOVED: f32 = 0.1;
 /// It is stuck after this time, in ms.
-const PATIENCE: u64 = 8_000;
+const PATIENCE: u64 = 10_000;
 /// An attempt to get away takes no longer than this, in ms.
 const ATTEMPT: u64 = 8_000;
 /// An attempt goes this far, in metres.
 const WAY: f32 = 0.6;
 /// Range, in metres, that counts: more is no better.
 const FAR: f32 = 2.0;
+/// With this much room, in metres, a way is open.
+const OPEN: f32 = 1.0;
 /// The way has to be free by this much more than a stop demands, in metres.
 const BEYOND: f32 = 0.1;
 /// How much worse a direction is, in metres, for having been tried in vain.
@@ -40,6 +42,8 @@ struct Attempt {
     from: Vector2<f32>,
     /// It is under way, no longer turning.
     driving: bool,
+    /// The way to the goal was shut as it began.
+    shut: bool,
 }
 
 /// A law with a way out of where it is stuck.
@@ -125,21 +129,29 @@ impl<L, const N: usize> Escape<L, N> {
         room
     }
 
+    /// There is room in the direction of the goal.
+    fn goal_is_open(&self, view: &View<N>) -> bool {
+        self.room(view, view.goal.heading.minus(view.pose.heading)) >= OPEN
+    }
+
     /// What an attempt asks for, or none if it is over.
     fn pursue(&mut self, view: &View<N>) -> Option<Advice> {
+        let open = self.goal_is_open(view);
         let attempt = self.attempt.as_mut()?;
+        // While it turns, the way to the goal may open: then there is no need to get away.
+        let opened = attempt.shut && !attempt.driving && open;
         let gone = math::norm(view.pose.position - attempt.from) >= WAY;
         let late = view
             .now
             .since(attempt.begun)
             .is_none_or(|time| time >= ATTEMPT);
-        if gone || late {
+        if gone || late || opened {
             self.attempt = None;
             return None;
         }
         let error = attempt.heading.minus(view.pose.heading).get();
         attempt.driving |= error.abs() <= self.config.alignment;
-        let limit = self.config.turn_rate_max / 2.0;
+        let limit = self.config.turn_rate_max;
         let turn_rate = within(self.config.heading_gain * error, limit);
         if attempt.driving {
             return Some(Advice {
@@ -200,6 +212,7 @@ impl<L: Law<N>, const N: usize> Law<N> for Escape<L, N> {
                 begun: view.now,
                 from: view.pose.position,
                 driving: false,
+                shut: !self.goal_is_open(view),
             });
         }
         self.pursue(view).unwrap_or(advice)

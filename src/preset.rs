@@ -20,6 +20,7 @@ pub const SRIKANDI_II_2012: Parameters = Parameters {
     corridor_margin: 0.15,
     hold_time: 1.0,
     confirm_samples: 3.0,
+    appear_samples: 1.0,
     heading_gain: 2.0,
     turn_rate_max: FRAC_PI_2,
     alignment: 0.1,
@@ -32,6 +33,7 @@ pub const SRIKANDI_II_2012: Parameters = Parameters {
     turn_acceleration: PI,
     reaction_time: 0.32,
     still_speed_max: 0.45,
+    still_speed_max_turning: 0.8,
     still_samples: 10.0,
     still_tolerance: 0.05,
     range_error: 0.02,
@@ -54,6 +56,7 @@ pub const SRIKANDI_II_2011: Parameters = Parameters {
     cruise_speed: 0.15,
     obstacle_speed_max: 0.3,
     still_speed_max: 0.2,
+    still_speed_max_turning: 0.3,
     ..SRIKANDI_II_2012
 };
 
@@ -79,6 +82,7 @@ pub const CORRIDOR_BASE: Parameters = Parameters {
     turn_distance: 0.1,
     robot_radius: 0.2,
     still_speed_max: 0.05,
+    still_speed_max_turning: 0.05,
     range_error: 0.01,
     reverse_speed_max: 0.0,
     resume_clearance: 0.02,

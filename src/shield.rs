@@ -112,6 +112,7 @@ pub struct Limits {
     reaction_time: i32,
     obstacle_speed: i32,
     still_speed: i32,
+    still_speed_turning: i32,
     speed_error: i32,
     min_distance: i32,
     stop_time: i32,
@@ -137,6 +138,7 @@ impl Limits {
             reaction_time: millimetres_up(config.reaction_time),
             obstacle_speed: millimetres_up(config.obstacle_speed_max),
             still_speed: millimetres_up(config.still_speed_max),
+            still_speed_turning: millimetres_up(config.still_speed_max_turning),
             speed_error: millimetres_up(config.speed_error),
             min_distance: millimetres_up(config.min_distance),
             stop_time: millimetres_up(config.stop_time),
@@ -176,6 +178,16 @@ impl Limits {
         match class {
             Class::Still => self.still_speed,
             Class::Unknown => self.obstacle_speed,
+        }
+    }
+
+    /// The speed bound of a class in mm/s for a turn: on the spot what stands still has its own,
+    /// since to turn gets the robot nowhere and is not worth betting on its staying there.
+    #[must_use]
+    pub const fn class_speed_turning(&self, class: Class, on_the_spot: bool) -> i32 {
+        match class {
+            Class::Still if on_the_spot => self.still_speed_turning,
+            _ => self.class_speed(class),
         }
     }
 
@@ -244,13 +256,24 @@ impl Limits {
     /// rest, as far as it can lead towards the thing, and the thing's way in that time.
     #[must_use]
     pub fn needed(&self, hazard: &Hazard, closing: &Closing, plan: &Plan, time: i32) -> i64 {
+        self.needed_at(self.class_speed(hazard.class), hazard, closing, plan, time)
+    }
+
+    /// The same from a thing that may be as fast as `speed`, mm/s.
+    fn needed_at(
+        &self,
+        speed: i32,
+        hazard: &Hazard,
+        closing: &Closing,
+        plan: &Plan,
+        time: i32,
+    ) -> i64 {
         let turned = hazard.turned.saturating_add(plan.turn);
         let share = |cosine: i32| i64::from(cosine.saturating_add(turned).clamp(0, 1000));
         let way = |i: usize| i64::from(hazard.way[i]) + i64::from(plan.way[i]);
-        let speed = i64::from(self.class_speed(hazard.class));
         share(closing.ahead) * way(0)
             + share(closing.back) * way(1)
-            + speed * (i64::from(hazard.age) + i64::from(time))
+            + i64::from(speed) * (i64::from(hazard.age) + i64::from(time))
     }
 
     /// SH.3 and SH.6: driving and turning both end before contact with the thing.
@@ -264,9 +287,11 @@ impl Limits {
             return false;
         }
         // The turn ends |ω|/α after the reaction time; both sides multiplied by α.
-        let left = there - self.needed(hazard, closing, plan, self.reaction_time);
-        let class_speed = i64::from(self.class_speed(hazard.class));
-        1000 * class_speed * i64::from(plan.turn_rate) <= i64::from(self.turn_acceleration) * left
+        let on_the_spot = plan.way == [0; 2];
+        let speed = self.class_speed_turning(hazard.class, on_the_spot);
+        let left = there - self.needed_at(speed, hazard, closing, plan, self.reaction_time);
+        1000 * i64::from(speed) * i64::from(plan.turn_rate)
+            <= i64::from(self.turn_acceleration) * left
     }
 
     /// SH.4: contact is possible within the stop time: t_lb = distance/closing ≤ T, with the

@@ -272,8 +272,10 @@ impl<const N: usize> Memory<N> {
             )
         });
         let mut agrees = [false; N];
-        for (agrees, memory) in agrees.iter_mut().zip(&self.sonar) {
-            *agrees = memory.agreed > 0;
+        let mut still = [false; N];
+        for (i, memory) in self.sonar.iter().enumerate() {
+            agrees[i] = memory.agreed > 0;
+            still[i] = memory.is_still(now, config);
         }
         let walls = Wall::beside(&sonar, &agrees, ring, config);
         let witnesses = self.witnesses(&sonar, observation, pose, ring, config);
@@ -291,6 +293,7 @@ impl<const N: usize> Memory<N> {
                 pose,
                 witness: Witness {
                     on_wall: is_wall(sonar[i], &ring.sonars()[i], &walls, config),
+                    beside_still: is_beside_still(i, &sonar, &still, ring, config),
                     ..witnesses[i]
                 },
             };
@@ -450,6 +453,8 @@ pub struct Witness {
     pub known_still: bool,
     /// The range is that of a wall that others hear as well.
     pub on_wall: bool,
+    /// What is heard is no nearer than a still thing that a sonar next to it hears.
+    pub beside_still: bool,
 }
 
 impl EchoMemory {
@@ -531,14 +536,17 @@ impl EchoMemory {
         }
 
         // Something that comes nearer faster than the bound, and a quarter more, adds up; another
-        // thing, which a jump or a turn brings into the cone, does not.
+        // thing, which a jump or a turn brings into the cone, does not. Nor does the side of a box
+        // that the next sonar hears the front of: it slides through the edge of this cone at any
+        // speed as the robot drives.
         let [ahead, back] = [0, 1].map(|i| grown(latest.odometer.way[i], look.odometer.way[i]));
         let turned = grown(latest.odometer.turned, look.odometer.turned);
         let swept = ahead + back + range * turned / 1000;
         let nearer = latest.range - range - GRAZING * swept;
         let one_thing = turned <= SAME_DIRECTION && nearer <= way(FASTEST, gap) + tolerance;
+        let slides = swept > 0 && look.witness.beside_still;
         let excess = nearer - way(config.obstacle_speed_max * 1.25, gap);
-        if one_thing && excess > 0 {
+        if one_thing && !slides && excess > 0 {
             self.excess = self.excess.saturating_add(excess);
             self.excessive = self.excessive.saturating_add(1);
         } else {
@@ -681,6 +689,31 @@ fn is_wall(
     };
     let wall = &walls[usize::from(sonar.axis.y < 0.0)];
     wall.is_some_and(|wall| wall.explains(range.get(), sonar, config))
+}
+
+/// A sonar next to sonar `i` hears a still thing that is no farther away than what `i` hears. Next to it
+/// is one if no other looks between them.
+fn is_beside_still<const N: usize>(
+    i: usize,
+    sonar: &[SonarReading; N],
+    still: &[bool; N],
+    ring: &Ring<N>,
+    config: &Config,
+) -> bool {
+    let SonarReading::Echo(range) = sonar[i] else {
+        return false;
+    };
+    let reach = range.get() + config.still_tolerance;
+    let heading = ring.sonars()[i].heading;
+    let turn = |j: usize| ring.sonars()[j].heading.minus(heading).get();
+    let is_next = |j: usize| {
+        let between = |k: usize| turn(k) * turn(j) > 0.0 && turn(k).abs() < turn(j).abs();
+        j != i && !(0..N).any(between)
+    };
+    (0..N).any(|j| {
+        let nearer = matches!(sonar[j], SonarReading::Echo(other) if other.get() <= reach);
+        still[j] && nearer && is_next(j)
+    })
 }
 
 /// The range of a judged reading in millimetres, rounded down; none if no echo came back.

@@ -567,6 +567,7 @@ fn stops_at_the_minimum_distance_with_hysteresis() {
         // A slow world, so that the minimum distance decides and not the time to contact.
         obstacle_speed_max: 0.3,
         still_speed_max: 0.3,
+        still_speed_max_turning: 0.3,
         stop_time: 0.0,
         resume_clearance: 0.1,
         ..preset::PIONEER_3DX

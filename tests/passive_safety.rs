@@ -235,6 +235,7 @@ impl World {
             late = random.whole(0, 400) as usize;
             let mut p = *config.parameters();
             p.still_speed_max = p.obstacle_speed_max;
+            p.still_speed_max_turning = p.obstacle_speed_max;
             config = Config::new(p).expect("still in range");
             ring = Ring::new(&std::array::from_fn(|i| placement_of(&ring, i)), &config)
                 .expect("the same ring");

@@ -127,6 +127,9 @@ proptest! {
             limits.class_speed(Class::Unknown), wide(config.obstacle_speed_max)
         ));
         prop_assert!(at_least(limits.class_speed(Class::Still), wide(config.still_speed_max)));
+        prop_assert!(at_least(
+            limits.class_speed_turning(Class::Still, true), wide(config.still_speed_max_turning)
+        ));
         prop_assert!(limits.class_speed(Class::Still) <= limits.class_speed(Class::Unknown));
         prop_assert!(at_least(limits.speed_error(), wide(config.speed_error)));
         prop_assert!(at_least(limits.stop_time(), wide(config.stop_time)));
@@ -244,12 +247,13 @@ proptest! {
         let room = has_room(limits, &hazard, &closing, &motion, twist);
         prop_assert!(!fits || room, "{plan:?}");
         if fits {
+            let (bound, left) = left_for_turn(limits, &hazard, &closing, &motion, twist);
             prop_assert!(promise::turn_ends_before_contact(
                 plan.turn_rate,
                 limits.turn_acceleration(),
                 limits.reaction_time(),
-                limits.class_speed(hazard.class),
-                left_for_turn(limits, &hazard, &closing, &motion, twist),
+                bound,
+                left,
             ));
         }
     }
@@ -453,7 +457,12 @@ proptest! {
         let Some(plan) = guard.plan(twist.speed, twist.turn_rate, &motion) else {
             return Ok(());
         };
-        let rest = guard.plan(0, 0, &motion);
+        let rest = guard.plan(0, 0, &motion).map(|rest| Plan {
+            // Judged by the class that the command was judged by, which is the thing's own only for a
+            // robot with some way to go.
+            way: std::array::from_fn(|i| rest.way[i].max(plan.way[i].min(1))),
+            ..rest
+        });
         let fits = limits.fits(&hazard, &closing, &plan);
         prop_assert!(!fits || rest.is_some_and(|rest| limits.fits(&hazard, &closing, &rest)));
     }
@@ -588,14 +597,15 @@ impl Question {
             let closing = &sonar.closing;
             let room = has_room(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(promise::admitted(speed, turn_rate, room));
+            let (bound, left) = left_for_turn(limits, hazard, closing, &motion, admission.twist);
             prop_assert!(
                 admission.twist == Twist::REST
                     || promise::turn_ends_before_contact(
                         turn_rate,
                         limits.turn_acceleration(),
                         limits.reaction_time(),
-                        limits.class_speed(hazard.class),
-                        left_for_turn(limits, hazard, closing, &motion, admission.twist)
+                        bound,
+                        left,
                     )
             );
         }
@@ -982,6 +992,7 @@ proptest! {
         // So that nothing but a gap is refused.
         p.obstacle_speed_max = 0.0;
         p.still_speed_max = 0.0;
+        p.still_speed_max_turning = 0.0;
         p.reaction_time = 0.02;
         p.acceleration = 0.05;
         p.braking = 10.0;

@@ -626,6 +626,38 @@ fn too_fast_is_noticed() {
     assert!(too_fast(200));
 }
 
+/// What a robot hears that drives past the corner of a box: its side slides through the edge of a cone,
+/// faster than anybody runs, and the next sonar hears its front. The ranges are from a simulated corridor
+/// with a box turned by a few degrees, as the P3-DX's sonar at −30° and the one at −10° heard them. Nobody
+/// is named; somebody who comes as fast and nearer than what stands there is, and so is somebody
+/// between things that do not agree with the robot's own motion.
+//= view.INV-6
+#[test]
+fn the_side_of_a_box_is_nobody() {
+    let (config, ring) = common::pioneer_with::<16>();
+    let too_fast = |slanted: [f32; 6], beside: fn(f32) -> f32| {
+        let mut memory = Memory::<16>::default();
+        (0..18).any(|tick| {
+            let x = 0.02 * tick as f32;
+            let mut ranges = [5.0; 16];
+            ranges[4] = beside(x);
+            // It has heard the wall behind for a while.
+            ranges[5] = slanted[usize::saturating_sub(tick, 12).min(5)];
+            let mut observation = common::in_order(10_000 + 100 * tick as u64, ranges);
+            let odometry = observation.odometry.as_mut().expect("odometry");
+            (odometry.x, odometry.speed) = (x, 0.2);
+            let view = memory.update(&observation, Vector2::new(9.0, 0.0), &ring, &config);
+            view.expect("a view").hazard[5].too_fast
+        })
+    };
+    let sliding = [1.297, 1.021, 0.791, 0.591, 0.448, 0.430];
+    let front = |x| 0.76 - x;
+    assert!(!too_fast(sliding, front));
+    assert!(too_fast(sliding, |_| 5.0), "nothing stands there");
+    assert!(too_fast(sliding, |x| 1.76 - x), "it stands farther away");
+    assert!(too_fast(sliding, |x| 0.76 - 5.0 * x), "it moves as well");
+}
+
 // ------------------------------------------------------------------ the view
 
 /// What must hold of every view.
@@ -798,6 +830,7 @@ fn seen(config: &Config, at: Placement, range: f32, off_axis: f32) -> (Sonar, [f
     p.blind_angle_max = 3.15;
     p.obstacle_speed_max = 0.0;
     p.still_speed_max = 0.0;
+    p.still_speed_max_turning = 0.0;
     p.reaction_time = 0.02;
     p.acceleration = 0.05;
     p.cruise_speed = 0.01;

@@ -16,6 +16,15 @@ pub fn model(limits: &Limits, hazard: &Hazard) -> Model {
     }
 }
 
+/// The same for a turn: on the spot what stands still has a bound of its own.
+fn turning(limits: &Limits, hazard: &Hazard, course: &Course) -> Model {
+    let bound = limits.class_speed_turning(hazard.class, course.fastest == [0.0; 2]);
+    Model {
+        obstacle_speed: f64::from(bound),
+        ..model(limits, hazard)
+    }
+}
+
 /// What a command comes to: the greatest speeds forward and backward until the robot brakes, mm/s,
 /// the time to rest, ms, and the turn rate until then, mrad/s.
 struct Course {
@@ -74,14 +83,21 @@ pub fn has_room(
     let clearance = f64::from(hazard.clearance);
     let driving = taken(&model, hazard, closing, &course, course.time);
     let slow = 1000.0 * course.turn_rate / f64::from(limits.turn_acceleration());
-    let turning = taken(&model, hazard, closing, &course, model.reaction_time + slow);
+    let time = model.reaction_time + slow;
+    let turning = taken(
+        &turning(limits, hazard, &course),
+        hazard,
+        closing,
+        &course,
+        time,
+    );
     // The last bits of sums of a few terms.
     let needed = driving.max(turning);
     needed <= clearance + 1e-9 * needed
 }
 
-/// What is left of the clearance for a turn, in thousandths of a millimetre, once the robot's own
-/// ways and the age are taken off.
+/// For a turn: the speed in mm/s that the thing may have, and what is left of the clearance, in thousandths of a millimetre, once the robot's own ways and
+/// the age are taken off.
 #[must_use]
 pub fn left_for_turn(
     limits: &Limits,
@@ -89,9 +105,10 @@ pub fn left_for_turn(
     closing: &Closing,
     motion: &Motion,
     twist: Twist,
-) -> i64 {
-    let model = model(limits, hazard);
-    let course = course(&model, motion, twist);
+) -> (i32, i64) {
+    let course = course(&model(limits, hazard), motion, twist);
+    let model = turning(limits, hazard, &course);
     let taken = taken(&model, hazard, closing, &course, 0.0);
-    ((f64::from(hazard.clearance) - taken) * 1000.0).ceil() as i64
+    let left = ((f64::from(hazard.clearance) - taken) * 1000.0).ceil() as i64;
+    (model.obstacle_speed as i32, left)
 }

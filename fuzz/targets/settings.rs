@@ -37,6 +37,11 @@ pub fn config(shares: &Shares) -> Config {
     p.cruise_speed = between(at.cruise_speed, 0.01, p.speed_max);
     p.braking_share = between(at.braking_share, (0.1 / p.braking).max(0.1), 1.0);
     p.still_speed_max = between(at.still_speed_max, 0.0, p.obstacle_speed_max);
+    p.still_speed_max_turning = between(
+        at.still_speed_max_turning,
+        p.still_speed_max,
+        p.obstacle_speed_max,
+    );
     Config::new(p).expect("within every range")
 }
 
@@ -93,6 +98,8 @@ pub fn fitted_to<const N: usize>(
                     p.reaction_time = (p.reaction_time / 2.0).max(0.02);
                     p.obstacle_speed_max /= 2.0;
                     p.still_speed_max = p.still_speed_max.min(p.obstacle_speed_max);
+                    p.still_speed_max_turning =
+                        p.still_speed_max_turning.min(p.obstacle_speed_max);
                 }
             }
             Err(refused) => {

@@ -188,12 +188,13 @@ fn question<const N: usize>(guard: &Guard, ring: &Ring<N>, bytes: &mut Bytes) {
         let room = has_room(limits, hazard, closing, &motion, twist);
         assert!(promise::admitted(speed, turn_rate, room));
         if twist != Twist::REST {
+            let (bound, left) = left_for_turn(limits, hazard, closing, &motion, twist);
             assert!(promise::turn_ends_before_contact(
                 turn_rate,
                 limits.turn_acceleration(),
                 limits.reaction_time(),
-                limits.class_speed(hazard.class),
-                left_for_turn(limits, hazard, closing, &motion, twist)
+                bound,
+                left,
             ));
         }
         let worse = worse(hazard, bytes);

@@ -329,12 +329,13 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             let room = has_room(limits, hazard, closing, &motion, twist);
             assert!(shield::admitted(twist.speed, twist.turn_rate, room));
             if twist != Twist::REST {
+                let (bound, left) = left_for_turn(limits, hazard, closing, &motion, twist);
                 assert!(shield::turn_ends_before_contact(
                     twist.turn_rate,
                     limits.turn_acceleration(),
                     limits.reaction_time(),
-                    limits.class_speed(hazard.class),
-                    left_for_turn(limits, hazard, closing, &motion, twist)
+                    bound,
+                    left,
                 ));
             }
             let worse = worse(hazard);

@@ -43,6 +43,7 @@ fn passages() -> Result<(), Box<dyn Error>> {
     };
     let trusting = Parameters {
         still_speed_max: preset::CORRIDOR_BASE.still_speed_max,
+        still_speed_max_turning: preset::CORRIDOR_BASE.still_speed_max_turning,
         range_error: preset::CORRIDOR_BASE.range_error,
         resume_clearance: preset::CORRIDOR_BASE.resume_clearance,
         ..pioneer

@@ -1,4 +1,5 @@
-//! S1 alone against S1 with S2's decision, on the same seeds, under bad sonars.
+//! S1 alone against S1 with S2's decision, and that with what appears heard twice, on the same seeds,
+//! under bad sonars.
 //!
 //! `cargo run --release -p sidestep-hw --example decide -- [SEEDS] [KEY=VALUE …]`, where a key is a
 //! configuration parameter as in the TOML file, or one of `scenario`, `false_echo`, `dropout`,
@@ -51,8 +52,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         faults.false_echo, faults.dropout
     );
     print!("{}", comparison.table());
-    match comparison.alone.contacts + comparison.decided.contacts {
-        0 => Ok(()),
+    let counts = [
+        comparison.alone,
+        comparison.decided,
+        comparison.heard_twice,
+    ];
+    match counts.iter().map(|count| count.contacts).sum() {
+        0_u32 => Ok(()),
         contacts => Err(format!("{contacts} contacts while the robot moved").into()),
     }
 }

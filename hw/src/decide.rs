@@ -9,12 +9,13 @@ use crate::drive::{Signals, Status};
 use crate::pilot::{Pilot, settings as base_settings};
 use crate::session::Output;
 use sidestep::avoid::Avoid;
-use sidestep::config::Config;
+use sidestep::config::{Config, Parameters};
 use sidestep::controller::Decision;
 use sidestep::decide::{BadSettings, Decide, Response, Settings, Verdict};
 use sidestep::escape::Escape;
 use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
+use sidestep::quantity::OutOfRange;
 use sidestep::ring::Ring;
 use sidestep::track::Obstacle;
 use sidestep::view::View;
@@ -57,6 +58,7 @@ speed_max = \"30 cm/s\"
 cruise_speed = \"15 cm/s\"
 obstacle_speed_max = \"30 cm/s\"
 still_speed_max = \"20 cm/s\"
+still_speed_max_turning = \"30 cm/s\"
 ";
 
 /// The robot of [`TABLE_1`].
@@ -465,6 +467,12 @@ impl Count {
         self.unnecessary_shield.values().sum()
     }
 
+    /// Unnecessary maneuvers and stops, whoever began them.
+    #[must_use]
+    pub fn unnecessary(&self) -> u32 {
+        self.unnecessary_by_law() + self.unnecessary_by_shield()
+    }
+
     /// Adds a run of `law` through `scenario`; `shown` says what obstacle it was shown.
     ///
     /// # Errors
@@ -636,16 +644,18 @@ fn person_ahead(simulation: &Simulation, config: &RobotConfig) -> bool {
     })
 }
 
-/// S1 alone and S1 with S2, on the same seeds.
+/// S1 alone and S1 with S2, on the same seeds. The config's `appear_samples` is not looked at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Comparison {
     /// S1 alone.
     pub alone: Count,
-    /// S1 with S2.
+    /// S1 with S2's decision.
     pub decided: Count,
+    /// The same where what appears has to be heard twice: `appear_samples` is 2.
+    pub heard_twice: Count,
 }
 
-/// Runs `seeds` seeds of a scenario with both laws.
+/// Runs `seeds` seeds of a scenario with each.
 ///
 /// # Errors
 /// If the scenario is unknown or something is out of range.
@@ -656,8 +666,18 @@ pub fn compare(
     config: &RobotConfig,
     mut progress: impl FnMut(u64),
 ) -> Result<Comparison, Box<dyn Error>> {
-    let (core, ring) = (config.core, base::ring::<16>(config)?);
+    let ring = base::ring::<16>(config)?;
     let settings = settings(config)?;
+    let [once, twice] = [1.0, 2.0].map(|appear_samples| {
+        let parameters = *config.core.parameters();
+        let core = Config::new(Parameters {
+            appear_samples,
+            ..parameters
+        })?;
+        Ok::<_, OutOfRange>(RobotConfig { core, ..*config })
+    });
+    let (once, twice) = (once?, twice?);
+    let core = once.core;
     let mut comparison = Comparison::default();
     for seed in 0..seeds {
         let scenario = Scenario::named(scenario, &Knobs { seed, ..*knobs })?
@@ -665,11 +685,13 @@ pub fn compare(
         let avoid = Shown::new(Avoid::new(core));
         let alone = Escape::new(avoid, core, ring);
         let shown = |law: &Escape<Shown<Avoid>, 16>| law.law().obstacle;
-        comparison.alone.add(&scenario, config, alone, shown)?;
+        comparison.alone.add(&scenario, &once, alone, shown)?;
         let decide = Decide::new(avoid, core, ring, settings);
         let decided = Escape::new(decide, core, ring);
         let shown = |law: &Escape<Decide<Shown<Avoid>, 16>, 16>| law.law().law().obstacle;
-        comparison.decided.add(&scenario, config, decided, shown)?;
+        comparison.decided.add(&scenario, &once, decided, shown)?;
+        let counted = &mut comparison.heard_twice;
+        counted.add(&scenario, &twice, decided, shown)?;
         progress(seed + 1);
     }
     Ok(comparison)
@@ -679,10 +701,14 @@ impl Comparison {
     /// The comparison as a table.
     #[must_use]
     pub fn table(&self) -> String {
-        let (one, two) = (&self.alone, &self.decided);
-        let mut table = format!("{:<58} {:>10} {:>10}\n", "", "S1", "S1+S2");
+        let columns = [&self.alone, &self.decided, &self.heard_twice];
+        let mut table = format!(
+            "{:<58} {:>10} {:>10} {:>10}\n",
+            "", "S1", "S1+S2", "twice"
+        );
         let mut row = |name: &str, value: &dyn Fn(&Count) -> String| {
-            let _ = writeln!(table, "{name:<58} {:>10} {:>10}", value(one), value(two));
+            let [one, two, three] = columns.map(value);
+            let _ = writeln!(table, "{name:<58} {one:>10} {two:>10} {three:>10}");
         };
         let each = |sum: f64, count: &Count| format!("{:.2}", sum / f64::from(count.runs.max(1)));
         let percent =
@@ -708,18 +734,17 @@ impl Comparison {
         row("attempts to get away", &|c| c.escapes.to_string());
         row("by the shield: stops begun", &|c| c.shield.to_string());
         row("  unnecessary", &|c| c.unnecessary_by_shield().to_string());
-        let causes: BTreeSet<&str> = one
-            .unnecessary_shield
-            .keys()
-            .chain(two.unnecessary_shield.keys())
-            .copied()
+        let causes: BTreeSet<&str> = columns
+            .iter()
+            .flat_map(|count| count.unnecessary_shield.keys().copied())
             .collect();
         for cause in causes {
             row(&format!("    {cause}"), &|c| {
                 c.unnecessary_shield.get(cause).unwrap_or(&0).to_string()
             });
         }
-        row("  ticks in which it holds the robot", &|c| {
+        row("unnecessary altogether", &|c| c.unnecessary().to_string());
+        row("ticks in which the shield holds the robot", &|c| {
             percent(c.held, c.ticks)
         });
         table

@@ -23,10 +23,12 @@ use nalgebra::Vector2;
 
 mod belief;
 mod loss;
+mod second_look;
 mod sensor;
 
 pub use belief::{Belief, NoBelief, NotStochastic, ONE, TransitionMatrix};
 pub use loss::{BadLoss, DistanceLoss, Dominated, LossTable, safest_of_the_least};
+pub use second_look::SecondLook;
 pub use sensor::{CameraLook, CameraModel, Hearing, SonarModel};
 
 /// S2 E7 with E6: seconds until robot and obstacle are level along the axis of travel, for an
