@@ -2,8 +2,15 @@
 
 #[cfg(not(kani))]
 use super::kani;
-use sidestep::decide::{self, Belief, LossTable, ONE, Parameters, Response, TransitionMatrix};
+use super::view::{any_sample, checked};
+use sidestep::config::{self, Config};
+use sidestep::decide::{
+    self, Belief, LossTable, ONE, Parameters, Response, SecondLook, TransitionMatrix,
+};
 use sidestep::law::Advice;
+use sidestep::observation::{BaseStatus, Observation, SonarSample};
+use sidestep::preset;
+use sidestep::quantity::Instant;
 use sidestep_spec::decide as law;
 
 /// Any belief in two states that there is.
@@ -161,4 +168,92 @@ pub fn decisions_never_move() {
     assert!(!overruled || response == Response::Stop);
     kani::cover!(overruled, "overruled");
     kani::cover!(advice.speed.is_nan() && response == Response::Stop, "NaN");
+}
+
+/// The Pioneer preset where what appears has to be heard twice.
+const TWICE: Config = checked(config::Parameters {
+    appear_samples: 2.0,
+    ..preset::PIONEER_3DX
+});
+
+/// What is handed on of a sonar's latest reading.
+fn second_look(look: &mut SecondLook<1>, latest: SonarSample) -> SonarSample {
+    let observation = Observation {
+        now: latest.taken_at,
+        sonar: [Some(latest)],
+        odometry: None,
+        sighting: None,
+        base: BaseStatus {
+            motors_enabled: true,
+            stalled: false,
+            emergency_stop: false,
+        },
+    };
+    let judged = look.judged(&observation, &TWICE);
+    match judged.sonar[0] {
+        Some(handed_on) => handed_on,
+        None => unreachable!(),
+    }
+}
+
+const fn both(sample: SonarSample) -> (f32, u64) {
+    (sample.range, sample.taken_at.0)
+}
+
+/// Any four readings one after the other, of any bits and at any times, some of them looked at twice.
+//= decide.INV-16
+//= decide.INV-17
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(6))]
+pub fn little_is_withheld() {
+    let mut look = SecondLook::default();
+    let mut latest = any_sample();
+    let mut before = both(second_look(&mut look, latest));
+    let mut in_a_row = 0;
+    for _ in 0..3 {
+        let again: bool = kani::any();
+        if !again {
+            latest = any_sample();
+        }
+        let handed_on = both(second_look(&mut look, latest));
+        assert!(law::latest_or_before(handed_on, both(latest), Some(before)));
+        let withheld = handed_on.1 != latest.taken_at.0;
+        in_a_row = match (withheld, again) {
+            (false, _) => 0,
+            (true, true) => in_a_row,
+            (true, false) => in_a_row + 1,
+        };
+        assert!(law::withheld_at_most_twice(in_a_row));
+        before = handed_on;
+        kani::cover!(in_a_row == 2, "two in a row");
+    }
+}
+
+/// A reading up to a second after an echo, with what the two may have come nearer.
+//= decide.INV-18
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(6))]
+pub fn explained_echoes_count_at_once() {
+    let mut look = SecondLook::default();
+    let gap = [1, 60, 100, 300, 1000][kani::any::<u8>() as usize % 5];
+    let at = |range, ms| SonarSample {
+        range,
+        taken_at: Instant(ms),
+    };
+    let (first, second) = (at(kani::any(), 1000), at(kani::any(), 1000 + gap));
+    kani::assume((0.0..5.0).contains(&first.range) && (0.0..5.0).contains(&second.range));
+    second_look(&mut look, first);
+    let handed_on = second_look(&mut look, second).taken_at == second.taken_at;
+    let closing = f64::from(TWICE.obstacle_speed_max) + f64::from(TWICE.speed_max);
+    assert!(law::explained_counts_at_once(
+        second.range,
+        first.range,
+        gap,
+        closing,
+        handed_on
+    ));
+    kani::cover!(handed_on && second.range < first.range, "it came nearer");
+    kani::cover!(!handed_on, "it appeared");
 }

@@ -18,15 +18,17 @@ use nalgebra::Vector2;
 /// A robot that has not gone this far, in metres, has not moved.
 const MOVED: f32 = 0.1;
 /// It is stuck after this time, in ms.
-const PATIENCE: u64 = 10_000;
+const PATIENCE: u64 = 14_000;
 /// An attempt to get away takes no longer than this, in ms.
-const ATTEMPT: u64 = 8_000;
+const ATTEMPT: u64 = 6_000;
 /// An attempt goes this far, in metres.
 const WAY: f32 = 0.6;
 /// Range, in metres, that counts: more is no better.
 const FAR: f32 = 2.0;
 /// With this much room, in metres, a way is open.
 const OPEN: f32 = 1.0;
+/// It has opened if it was less by this, in metres.
+const OPENED: f32 = 0.5;
 /// The way has to be free by this much more than a stop demands, in metres.
 const BEYOND: f32 = 0.1;
 /// How much worse a direction is, in metres, for having been tried in vain.
@@ -42,8 +44,8 @@ struct Attempt {
     from: Vector2<f32>,
     /// It is under way, no longer turning.
     driving: bool,
-    /// The way to the goal was shut as it began.
-    shut: bool,
+    /// The room towards the goal as it began, in metres.
+    room: f32,
 }
 
 /// A law with a way out of where it is stuck.
@@ -129,17 +131,17 @@ impl<L, const N: usize> Escape<L, N> {
         room
     }
 
-    /// There is room in the direction of the goal.
-    fn goal_is_open(&self, view: &View<N>) -> bool {
-        self.room(view, view.goal.heading.minus(view.pose.heading)) >= OPEN
+    /// The room in the direction of the goal.
+    fn room_to_goal(&self, view: &View<N>) -> f32 {
+        self.room(view, view.goal.heading.minus(view.pose.heading))
     }
 
     /// What an attempt asks for, or none if it is over.
     fn pursue(&mut self, view: &View<N>) -> Option<Advice> {
-        let open = self.goal_is_open(view);
+        let room = self.room_to_goal(view);
         let attempt = self.attempt.as_mut()?;
         // While it turns, the way to the goal may open: then there is no need to get away.
-        let opened = attempt.shut && !attempt.driving && open;
+        let opened = !attempt.driving && room >= OPEN.max(attempt.room + OPENED);
         let gone = math::norm(view.pose.position - attempt.from) >= WAY;
         let late = view
             .now
@@ -212,7 +214,7 @@ impl<L: Law<N>, const N: usize> Law<N> for Escape<L, N> {
                 begun: view.now,
                 from: view.pose.position,
                 driving: false,
-                shut: !self.goal_is_open(view),
+                room: self.room_to_goal(view),
             });
         }
         self.pursue(view).unwrap_or(advice)

@@ -6,11 +6,11 @@ use common::{any_f32, between, pioneer_with, view};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use sidestep::avoid::Avoid;
-use sidestep::config::Config;
+use sidestep::config::{self, Config};
 use sidestep::decide::{
     self, BadLoss, BadSettings, Belief, CameraLook, Decide, DistanceLoss, Dominated, Hearing,
-    LossTable, NoBelief, NotStochastic, ONE, Parameters, Response, Settings, SonarModel,
-    TransitionMatrix,
+    LossTable, NoBelief, NotStochastic, ONE, Parameters, Response, SecondLook, Settings,
+    SonarModel, TransitionMatrix,
 };
 use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
@@ -570,6 +570,94 @@ proptest! {
             prop_assert!(!stop || law::never_into_motion(true, [0.0, given[1]], given));
         }
     }
+}
+
+/// The Pioneer preset where what appears has to be heard twice.
+fn twice() -> Config {
+    Config::new(config::Parameters {
+        appear_samples: 2.0,
+        ..*common::pioneer().parameters()
+    })
+    .expect("in range")
+}
+
+/// What is handed on of one sonar's reading at a time.
+fn handed_on(look: &mut SecondLook<1>, range: f32, at: u64, config: &Config) -> (f32, u64) {
+    let judged = look.judged(&common::in_order(at, [range]), config);
+    let sample = judged.sonar[0].expect("a reading");
+    (sample.range, sample.taken_at.0)
+}
+
+proptest! {
+    #![proptest_config(common::cases(500))]
+
+    /// A thing that comes and goes among false echoes and lost ones, with bits of any kind between.
+    //= decide.INV-16
+    //= decide.INV-17
+    //= decide.INV-18
+    #[test]
+    fn what_appears_is_heard_twice(
+        readings in prop::collection::vec(
+            (prop_oneof![4 => 0.0_f32..6.0, 1 => any_f32()], 1..400_u64, 0..4_u8), 2..40,
+        ),
+    ) {
+        let config = twice();
+        let closing = f64::from(config.obstacle_speed_max) + f64::from(config.speed_max);
+        let mut look = SecondLook::default();
+        let (mut now, mut before, mut in_a_row) = (1_000, None, 0);
+        // The last echo that was handed on.
+        let mut echo: Option<(f32, u64)> = None;
+        for (range, gap, again) in readings {
+            now += gap;
+            let handed = handed_on(&mut look, range, now, &config);
+            prop_assert!(law::latest_or_before(handed, (range, now), before));
+            let counts = handed.1 == now;
+            in_a_row = if counts { 0 } else { in_a_row + 1 };
+            prop_assert!(law::withheld_at_most_twice(in_a_row));
+            if let Some((last, at)) = echo.filter(|(_, at)| now - at <= 1_000) {
+                prop_assert!(
+                    law::explained_counts_at_once(range, last, now - at, closing, counts),
+                    "{range} m after {last} m"
+                );
+            }
+            if again == 0 && range.is_finite() {
+                let again = handed_on(&mut look, range, now, &config);
+                prop_assert!(law::latest_or_before(again, handed, None));
+            }
+            if counts {
+                echo = if range < config.sonar_range_max { Some((range, now)) } else { echo };
+            }
+            before = Some(handed);
+        }
+    }
+}
+
+/// One false echo is not handed on, and what was heard before grows old; a thing is handed on at its
+/// second look, or the third if a false echo comes between. Who is followed counts at once, after a lost
+/// echo too; and with one sample everything does.
+#[test]
+fn what_appears_is_looked_at_again() {
+    let config = twice();
+    let through = |ranges: &[f32], config: &Config| {
+        let mut look = SecondLook::default();
+        let mut at = 0;
+        let mut step = |range: &f32| {
+            at += 100;
+            handed_on(&mut look, *range, at, config)
+        };
+        ranges.iter().map(&mut step).collect::<Vec<_>>()
+    };
+    let times = |ranges: &[f32]| {
+        let handed = through(ranges, &config);
+        handed.into_iter().map(|(_, at)| at).collect::<Vec<_>>()
+    };
+    assert_eq!(through(&[4.0, 1.0], &config), [(4.0, 100), (4.0, 100)]);
+    assert_eq!(times(&[4.0, 1.0, 4.0]), [100, 100, 300]);
+    assert_eq!(times(&[4.0, 1.0, 0.95]), [100, 100, 300]);
+    assert_eq!(times(&[4.0, 1.0, 2.0, 0.9]), [100, 100, 100, 400]);
+    assert_eq!(times(&[1.0, 0.9, 5.0, 0.7, 0.6]), [100, 200, 300, 400, 500]);
+    let once = common::pioneer();
+    assert_eq!(through(&[4.0, 1.0], &once), [(4.0, 100), (1.0, 200)]);
 }
 
 /// A view of three sonars, the middle one of which looks ahead and reads this.

@@ -132,7 +132,8 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         advice_is_within_limits;
     decide: beliefs_are_on_the_simplex, updates_stay_on_the_simplex,
         only_stochastic_rows_pass, expected_losses_are_between,
-        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move;
+        ties_go_to_the_safest, dominated_actions_are_refused, decisions_never_move, little_is_withheld,
+        explained_echoes_count_at_once;
     edge: nearness_is_bounded, closeness_is_bounded, projection_is_bounded, far_is_harmless,
         blind_is_never_clear, greatest_projection_decides, steering_is_bounded,
         machine_stops_and_looks;

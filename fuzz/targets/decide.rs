@@ -6,12 +6,12 @@ use super::settings;
 use nalgebra::Vector2;
 use sidestep::config::Config;
 use sidestep::decide::{
-    self, Belief, CameraLook, Decide, DistanceLoss, LossTable, NoBelief, ONE, Response, Settings,
-    TransitionMatrix,
+    self, Belief, CameraLook, Decide, DistanceLoss, LossTable, NoBelief, ONE, Response, SecondLook,
+    Settings, TransitionMatrix,
 };
 use sidestep::failsafe::StopReason;
 use sidestep::law::{Advice, Law};
-use sidestep::observation::{BaseStatus, SonarReading};
+use sidestep::observation::{BaseStatus, Observation, SonarReading, SonarSample};
 use sidestep::preset;
 use sidestep::quantity::{Instant, Length};
 use sidestep::view::{Class, GoalView, Hazard, Pose, View};
@@ -26,10 +26,13 @@ const STEPS: usize = 64;
 /// If a predicate of the law book is broken.
 pub fn run(data: &[u8]) {
     let mut bytes = Bytes::new(data);
-    match bytes.u8() % 3 {
-        0 => filter(&mut bytes),
-        1 => losses(&mut bytes),
-        _ => advice(&mut bytes),
+    match bytes.u8() {
+        0xe0.. => looks(&mut bytes),
+        kind => match kind % 3 {
+            0 => filter(&mut bytes),
+            1 => losses(&mut bytes),
+            _ => advice(&mut bytes),
+        },
     }
 }
 
@@ -105,6 +108,55 @@ fn filter(bytes: &mut Bytes) {
             assert!(law::on_simplex(floored.parts(), ONE));
             belief = floored;
         }
+    }
+}
+
+/// Any readings of one sonar where what appears has to be heard twice, some of them looked at again.
+fn looks(bytes: &mut Bytes) {
+    let mut p = *settings::config(bytes).parameters();
+    p.appear_samples = 2.0;
+    let config = Config::new(p).expect("within every range");
+    let mut look = SecondLook::<1>::default();
+    let mut latest = None;
+    let (mut before, mut in_a_row, mut now) = (None, 0, 0_u64);
+    for _ in 0..STEPS {
+        if bytes.is_empty() {
+            break;
+        }
+        let again = latest.is_some() && bytes.u8() % 4 == 0;
+        if !again {
+            now = match bytes.u8() {
+                0xff => bytes.u64(),
+                gap => now.saturating_add(u64::from(gap)),
+            };
+            latest = Some(SonarSample {
+                range: bytes.number(),
+                taken_at: Instant(now),
+            });
+        }
+        let Some(latest) = latest else { break };
+        let observation = Observation {
+            now: Instant(now),
+            sonar: [Some(latest)],
+            odometry: None,
+            sighting: None,
+            base: BaseStatus {
+                motors_enabled: true,
+                stalled: false,
+                emergency_stop: false,
+            },
+        };
+        let handed_on = look.judged(&observation, &config).sonar[0].expect("a reading");
+        let both = |sample: SonarSample| (sample.range, sample.taken_at.0);
+        let (handed_on, latest) = (both(handed_on), both(latest));
+        assert!(law::latest_or_before(handed_on, latest, before));
+        in_a_row = match (handed_on.1 != latest.1, again) {
+            (false, _) => 0,
+            (true, true) => in_a_row,
+            (true, false) => in_a_row + 1,
+        };
+        assert!(law::withheld_at_most_twice(in_a_row));
+        before = Some(handed_on);
     }
 }
 

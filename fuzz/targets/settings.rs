@@ -98,8 +98,7 @@ pub fn fitted_to<const N: usize>(
                     p.reaction_time = (p.reaction_time / 2.0).max(0.02);
                     p.obstacle_speed_max /= 2.0;
                     p.still_speed_max = p.still_speed_max.min(p.obstacle_speed_max);
-                    p.still_speed_max_turning =
-                        p.still_speed_max_turning.min(p.obstacle_speed_max);
+                    p.still_speed_max_turning = p.still_speed_max_turning.min(p.obstacle_speed_max);
                 }
             }
             Err(refused) => {

@@ -52,11 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         faults.false_echo, faults.dropout
     );
     print!("{}", comparison.table());
-    let counts = [
-        comparison.alone,
-        comparison.decided,
-        comparison.heard_twice,
-    ];
+    let counts = [comparison.alone, comparison.decided, comparison.heard_twice];
     match counts.iter().map(|count| count.contacts).sum() {
         0_u32 => Ok(()),
         contacts => Err(format!("{contacts} contacts while the robot moved").into()),

@@ -702,10 +702,7 @@ impl Comparison {
     #[must_use]
     pub fn table(&self) -> String {
         let columns = [&self.alone, &self.decided, &self.heard_twice];
-        let mut table = format!(
-            "{:<58} {:>10} {:>10} {:>10}\n",
-            "", "S1", "S1+S2", "twice"
-        );
+        let mut table = format!("{:<58} {:>10} {:>10} {:>10}\n", "", "S1", "S1+S2", "twice");
         let mut row = |name: &str, value: &dyn Fn(&Count) -> String| {
             let [one, two, three] = columns.map(value);
             let _ = writeln!(table, "{name:<58} {one:>10} {two:>10} {three:>10}");

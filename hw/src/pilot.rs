@@ -17,8 +17,6 @@ use sidestep::law::Law;
 use sidestep::observation::Observation;
 use sidestep::quantity::{Instant, OutOfRange};
 use sidestep::ring::Ring;
-use sidestep::shield::Limits;
-use sidestep::view::Class;
 use std::collections::{BTreeMap, VecDeque};
 use std::io::Write;
 
@@ -260,7 +258,7 @@ impl<L: Law<N>, const N: usize> Pilot<L, N> {
                         now,
                         if resumed { "ready again" } else { "ready" }.to_owned(),
                     );
-                    self.note(now, promise(self.controller.shield().limits()));
+                    self.note(now, promise(&self.config.core));
                 }
                 Event::AlreadyOpen => {
                     self.note(now, "closed a session that was open already".to_owned());
@@ -489,13 +487,17 @@ impl From<Halt> for StopReason {
 
 /// The promise in force, in words.
 #[must_use]
-pub fn promise(limits: &Limits) -> String {
-    let metres = |speed| f64::from(speed) / 1000.0;
+pub fn promise(config: &Config) -> String {
+    let heard_twice = if config.appear_samples >= 2.0 {
+        "; what appears out of nowhere from when it is heard twice"
+    } else {
+        ""
+    };
     format!(
         "promise: at rest before contact with people and whatever is unknown up to {:.2} m/s, and \
-         with what has been seen to stand still up to {:.2} m/s",
-        metres(limits.class_speed(Class::Unknown)),
-        metres(limits.class_speed(Class::Still)),
+         with what has been seen to stand still up to {:.2} m/s, {:.2} m/s while turning on the \
+         spot{heard_twice}",
+        config.obstacle_speed_max, config.still_speed_max, config.still_speed_max_turning,
     )
 }
 

@@ -307,3 +307,34 @@ pub fn only_the_obstacle_differs<V: PartialEq>(given_without: &V, shown_without:
 pub fn blind_is_stop(ms_without_evidence: u64, control_period: u64, stop: bool) -> bool {
     ms_without_evidence <= control_period || stop
 }
+
+/// decide.INV-16: of a sonar's readings no more than two in a row are withheld.
+#[must_use]
+pub fn withheld_at_most_twice(in_a_row: u32) -> bool {
+    in_a_row <= 2
+}
+
+/// decide.INV-17: what is handed on is the latest reading, or the one that was handed on before, to the
+/// bit. A reading is its range and its time.
+#[must_use]
+pub fn latest_or_before(
+    handed_on: (f32, u64),
+    latest: (f32, u64),
+    before: Option<(f32, u64)>,
+) -> bool {
+    let same = |one: (f32, u64)| (one.0.to_bits(), one.1) == (handed_on.0.to_bits(), handed_on.1);
+    same(latest) || before.is_some_and(same)
+}
+
+/// decide.INV-18: a reading that is no nearer than the last echo less what robot and thing, closing in
+/// at `closing` (m/s), come nearer in `gap` ms counts at once. `range` and `echo` are in metres.
+#[must_use]
+pub fn explained_counts_at_once(
+    range: f32,
+    echo: f32,
+    gap: u64,
+    closing: f64,
+    handed_on: bool,
+) -> bool {
+    f64::from(range) < f64::from(echo) - closing * gap as f64 / 1000.0 || handed_on
+}

@@ -2,6 +2,7 @@
 
 use crate::config::Config;
 use crate::observation::{Observation, SonarSample};
+use crate::quantity::Instant;
 use crate::shield::milliseconds;
 
 /// Withholds an echo that is nearer than anything can have come since the sonar's last echo, until the
@@ -45,7 +46,7 @@ impl<const N: usize> SecondLook<N> {
         let mut judged = *observation;
         if config.appear_samples >= 2.0 {
             for (sample, ear) in judged.sonar.iter_mut().zip(&mut self.sonar) {
-                *sample = sample.map(|latest| ear.judged(latest, config));
+                *sample = sample.map(|latest| ear.judged(latest, observation.now, config));
             }
         }
         judged
@@ -54,15 +55,18 @@ impl<const N: usize> SecondLook<N> {
 
 impl Ear {
     /// The reading that counts: the latest, or the one before.
-    fn judged(&mut self, latest: SonarSample, config: &Config) -> SonarSample {
+    fn judged(&mut self, latest: SonarSample, now: Instant, config: &Config) -> SonarSample {
         if let Some(passed) = self.passed {
             if self.withheld == Some(latest) {
                 return passed;
             }
-            let borne_out = self.withheld.is_some_and(|first| agrees(first, latest, config));
+            let borne_out = self
+                .withheld
+                .is_some_and(|first| agrees(first, latest, config));
             let withheld = self.count < WITHHELD_MAX
                 && !borne_out
                 && latest.taken_at > passed.taken_at
+                && latest.taken_at <= now
                 && self.appears(latest, config);
             if withheld {
                 self.withheld = Some(latest);
@@ -79,7 +83,7 @@ impl Ear {
     }
 
     /// A reading is an echo from nearer than anything can be that was heard last, or that was out of
-    /// range if nothing was heard for `hold_time`. What is no number is none.
+    /// range if nothing was heard for `hold_time`. A contact, or what is no range at all, is none.
     fn appears(&self, latest: SonarSample, config: &Config) -> bool {
         let held = |echo: &SonarSample| {
             let gap = latest.taken_at.since(echo.taken_at)?;
@@ -90,7 +94,8 @@ impl Ear {
             .as_ref()
             .and_then(held)
             .unwrap_or((config.sonar_range_max, 0));
-        latest.range < range - moved(gap, config)
+        let contact = latest.range < config.sonar_range_min || latest.range <= 0.0;
+        !contact && latest.range < range - moved(gap, config)
     }
 }
 
