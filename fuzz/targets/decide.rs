@@ -2,7 +2,7 @@
 //! round a law gets to see.
 
 use super::bytes::Bytes;
-use super::settings;
+use super::settings::{self, Shares};
 use nalgebra::Vector2;
 use sidestep::config::Config;
 use sidestep::decide::{
@@ -113,7 +113,8 @@ fn filter(bytes: &mut Bytes) {
 
 /// Any readings of one sonar where what appears has to be heard twice, some of them looked at again.
 fn looks(bytes: &mut Bytes) {
-    let mut p = *settings::config(bytes).parameters();
+    let shares: Shares = std::array::from_fn(|_| bytes.share());
+    let mut p = *settings::config(&shares).parameters();
     p.appear_samples = 2.0;
     let config = Config::new(p).expect("within every range");
     let mut look = SecondLook::<1>::default();
@@ -123,8 +124,8 @@ fn looks(bytes: &mut Bytes) {
         if bytes.is_empty() {
             break;
         }
-        let again = latest.is_some() && bytes.u8() % 4 == 0;
-        if !again {
+        let before_that = latest;
+        if latest.is_none() || bytes.u8() % 4 > 0 {
             now = match bytes.u8() {
                 0xff => bytes.u64(),
                 gap => now.saturating_add(u64::from(gap)),
@@ -134,6 +135,8 @@ fn looks(bytes: &mut Bytes) {
                 taken_at: Instant(now),
             });
         }
+        // What is as it was, time included, is no new reading.
+        let again = latest == before_that;
         let Some(latest) = latest else { break };
         let observation = Observation {
             now: Instant(now),

@@ -128,7 +128,8 @@ pub struct Table {
     pub stopped: usize,
     /// Rows with an echo at or under the minimum distance in front.
     pub near: usize,
-    /// Rows of those in which the robot was not told to stand still: must be none.
+    /// Rows of those in which the robot was not stopped, or told to drive ahead: must be none. A stopped
+    /// robot may turn and back off.
     pub near_but_moving: usize,
     /// Stops by kind.
     pub stops: BTreeMap<String, usize>,
@@ -279,7 +280,7 @@ fn feed<const N: usize>(
             .any(|(sonar, range)| sonar.forward && range <= config.min_distance);
         if near {
             table.near += 1;
-            if decision.stop.is_none() || decision.command.speed() != 0 {
+            if decision.stop.is_none() || decision.command.speed() > 0 {
                 table.near_but_moving += 1;
             }
         }

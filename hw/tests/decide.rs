@@ -20,7 +20,7 @@ fn bad_sonars() -> Knobs {
 /// What S1 does about nothing is at least halved, nobody is touched, and nobody is driven on at more
 /// often. In the chapter are the figures for a thousand seeds.
 #[test]
-fn unnecessary_maneuvers_are_halved() {
+fn unnecessary_maneuvers_and_stops_are_halved() {
     let config = decide::table_1().expect("S2's Table 1");
     for scenario in [APPROACH, "empty-room", "fig12-head-on"] {
         let compared = decide::compare(scenario, seeds(20), &bad_sonars(), &config, |_| ());
@@ -39,6 +39,11 @@ fn unnecessary_maneuvers_are_halved() {
             alone.unnecessary_by_law()
         );
         assert!(2.0 * decided.unnecessary_turn <= alone.unnecessary_turn);
+        // The shield's stops are spared where what appears has to be heard twice.
+        let twice = &compared.heard_twice;
+        assert_eq!(twice.contacts, 0, "{scenario}");
+        assert!(2 * twice.unnecessary() <= alone.unnecessary(), "{scenario}");
+        assert!(twice.arrived > alone.arrived, "{scenario}");
     }
 }
 
