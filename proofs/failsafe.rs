@@ -61,9 +61,13 @@ pub fn worst_cause_is_named() {
 //= failsafe.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(70))]
 #[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, super::shield::any_fit))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::needed, super::shield::any_needed)
+)]
 #[cfg_attr(
     kani,
     kani::stub(

@@ -144,7 +144,7 @@ pub fn accepted_pose_is_clear() {
 /// How unlike a class any features are is a finite number, for both models as trained.
 //= gesture.INV-4
 #[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(12))]
 pub fn unlikeness_is_finite() {
     let model = Model::NEURAL_NETWORK;

@@ -62,7 +62,7 @@ pub fn any_hazard() -> Hazard {
         clearance: any_in(-10_000, 20_000),
         age: any_in(0, 10_000),
         way: [any_in(0, 10_000), any_in(0, 10_000)],
-        turned: any_in(0, 10_000),
+        turned: any_in(0, 40_000),
         class: any_class(),
         too_fast: kani::any(),
         stuck: kani::any(),
@@ -331,36 +331,6 @@ pub fn admitted_motion_stays_safe_2011() {
     admitted_motion_stays_safe(const { Limits::new(&SRIKANDI_2011) }, Class::Unknown);
 }
 
-/// Braking keeps a safe state safe: while the speed falls from v to v' the robot travels
-/// (v² − v'²)/2b at most, and the thing V·(v − v')/b. Any speeds up to 12 m/s, any clearance and any
-/// ways up to 6 m, straight at a thing of either class; all presets brake at 1 m/s². Whatever numbers
-/// stand for the two squares, so for the squares as well. Ways in mm, what is left in whole mm.
-//= shield.INV-3
-#[cfg_attr(kani, kani::proof)]
-#[cfg_attr(kani, kani::solver(cadical))]
-#[cfg_attr(kani, kani::unwind(40))]
-pub fn braking_stays_safe() {
-    let limits = pioneer();
-    let (b, o) = (limits.braking(), limits.class_speed(any_class()));
-    let (clearance, robot, thing) = (any_in(0, 6_000), any_in(0, 6_000), any_in(0, 6_000));
-    let speed = any_in(0, 12_000);
-    let after = any_in(0, speed);
-    let [square, square_after] = [any_in(0, 144_000_000), any_in(0, 144_000_000)].map(i64::from);
-    let safe = |speed, square, left| {
-        promise::safe_state_of(speed, square, 1000, 1000 * i64::from(left), b, o)
-    };
-    kani::assume(safe(speed, square, clearance));
-    kani::assume(i64::from(2 * b * robot) <= square - square_after);
-    kani::assume(b * thing <= o * (speed - after));
-    let left = clearance - robot - thing;
-    assert!(promise::stays_safe(true, safe(after, square_after, left)));
-    kani::cover!(
-        after == 0 && square_after == 0 && speed == 300 && square == 90_000,
-        "to rest"
-    );
-    kani::cover!(left == 0 && speed > after, "just in time");
-}
-
 /// Standing still is always possible, and needs nothing: rest is admitted in any state.
 //= shield.INV-3
 #[cfg_attr(kani, kani::proof)]
@@ -385,6 +355,17 @@ pub fn rest_is_always_safe() {
 /// Whether there is room may be answered in any way.
 pub fn any_fit(_limits: &Limits, _hazard: &Hazard, _closing: &Closing, _plan: &Plan) -> bool {
     kani::any()
+}
+
+/// Any clearance may be needed.
+pub fn any_needed(
+    _limits: &Limits,
+    _hazard: &Hazard,
+    _closing: &Closing,
+    _plan: &Plan,
+    _time: i32,
+) -> i64 {
+    i64::from(kani::any::<i32>())
 }
 
 /// Contact may be judged in any way.
@@ -730,9 +711,10 @@ pub fn any_admission<const N: usize>(
 //= shield.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
-#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::solver(cadical))]
 #[cfg_attr(kani, kani::unwind(70))]
 #[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::needed, any_needed))]
 #[cfg_attr(
     kani,
     kani::stub(crate::shield::Limits::contact_within_stop_time, any_contact)

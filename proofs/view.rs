@@ -11,7 +11,7 @@ use sidestep::observation::{
 };
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length};
-use sidestep::ring::{Placement, Ring};
+use sidestep::ring::{Placement, Ring, Sonar};
 use sidestep::track::Obstacle;
 use sidestep::view::{
     Class, EchoMemory, GoalView, Hazard, Look, Memory, Odometer, Pose, View, Witness,
@@ -326,6 +326,57 @@ pub fn nothing_is_forgotten() {
     kani::cover!(after.range < 1000 && gap == 500, "held without an echo");
 }
 
+/// Any hazard may come of a look: `any_look_is_taken_in`.
+pub fn any_taken_in(
+    _memory: &mut EchoMemory,
+    _look: &Look,
+    _sonar: &Sonar,
+    _config: &Config,
+) -> Hazard {
+    super::shield::any_hazard()
+}
+
+/// A sonar's memory takes in any two looks, at any times, after any ways and turns, from anywhere,
+/// without a panic or an overflow, and what comes of them is within what the shield reckons with.
+//= view.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+pub fn any_look_is_taken_in() {
+    let config = BLIND_PIONEER;
+    let ring = one_sonar(&config);
+    let sonar = &ring.sonars()[0];
+    let mut memory = EchoMemory::default();
+    for _ in 0..2 {
+        let measured = kani::any::<bool>().then(|| super::shield::any_in(0, 20_000));
+        let odometer = Odometer {
+            way: [kani::any(), kani::any()],
+            turned: kani::any(),
+        };
+        kani::assume(odometer.way.iter().all(|way| *way >= 0) && odometer.turned >= 0);
+        let look = Look {
+            measured,
+            taken_at: Instant(kani::any()),
+            now: Instant(kani::any()),
+            odometer,
+            pose: None,
+            witness: Witness {
+                heard_there: kani::any(),
+                ..any_witness()
+            },
+        };
+        let hazard = memory.update(&look, sonar, &config);
+        assert!(promise::within_reckoning(
+            [hazard.range, hazard.clearance],
+            [hazard.age, hazard.way[0], hazard.way[1]],
+            hazard.turned
+        ));
+        kani::cover!(hazard.range == 0, "a contact");
+        kani::cover!(measured.is_none() && hazard.range < 1000, "held");
+    }
+}
+
 /// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits.
 //= view.INV-4
 #[cfg_attr(kani, kani::proof)]
@@ -335,6 +386,7 @@ pub fn nothing_is_forgotten() {
 #[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
+#[cfg_attr(kani, kani::stub(crate::view::EchoMemory::update, any_taken_in))]
 pub fn any_observation_is_judged() {
     let config = BLIND_PIONEER;
     let ring = one_sonar(&config);

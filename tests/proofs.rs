@@ -152,12 +152,12 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         rest_does_not_overflow, plan_covers_command, plan_covers_motion,
         admitted_motion_stays_safe_pioneer, admitted_motion_stays_safe_still,
         admitted_motion_stays_safe_2012, admitted_motion_stays_safe_2011, fits_by_clearance,
-        fits_by_age, fits_by_way, braking_stays_safe,
+        fits_by_age, fits_by_way,
         rest_is_always_safe, any_advice_is_limited, what_moves_was_admitted, curvature_is_kept,
         search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
         turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
         stop_set_is_monotone;
-    view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_observation_is_judged;
+    view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_look_is_taken_in, any_observation_is_judged;
 };
 
 /// Names of the harnesses in the source: functions below a `kani::proof`.

@@ -74,23 +74,8 @@ pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_tim
 /// thousandths, `left` in thousandths of a millimetre.
 #[must_use]
 pub fn safe_state(speed: i32, cosine: i32, left: i64, braking: i32, obstacle_speed: i32) -> bool {
-    let square = i64::from(speed) * i64::from(speed);
-    safe_state_of(speed, square, cosine, left, braking, obstacle_speed)
-}
-
-/// SH.1 with the square of the speed given beside it. A proof that holds whatever number stands there
-/// holds for the square, and has no product of two unknowns.
-#[must_use]
-pub fn safe_state_of(
-    speed: i32,
-    square: i64,
-    cosine: i32,
-    left: i64,
-    braking: i32,
-    obstacle_speed: i32,
-) -> bool {
     let [v, k, b, o] = [speed, cosine, braking, obstacle_speed].map(i64::from);
-    k * square + 2000 * o * v <= 2 * b * left
+    k * v * v + 2000 * o * v <= 2 * b * left
 }
 
 /// shield.INV-3: a safe state stays safe through a step.

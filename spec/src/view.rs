@@ -55,3 +55,13 @@ pub fn still_is_earned(still: bool, readings: u32, needed: u32, age: u64, age_ma
 pub fn losing_sight_frees_nothing(clearance: [i32; 2], age: [i32; 2], unknown: [bool; 2]) -> bool {
     clearance[1] <= clearance[0] && age[1] >= age[0] && (unknown[1] || !unknown[0])
 }
+
+/// view.INV-4, for what a sonar's memory makes of a look: ranges and clearances (mm), age and ways, and
+/// the turn (mrad) are within what the shield reckons with.
+#[must_use]
+pub fn within_reckoning(ranges: [i32; 2], since: [i32; 3], turned: i32) -> bool {
+    (0..=20_000).contains(&ranges[0])
+        && (-10_000..=20_000).contains(&ranges[1])
+        && since.iter().all(|value| (0..=10_000).contains(value))
+        && (0..=40_000).contains(&turned)
+}
