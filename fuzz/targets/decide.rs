@@ -119,7 +119,11 @@ fn looks(bytes: &mut Bytes) {
     let config = Config::new(p).expect("within every range");
     let mut look = SecondLook::<1>::default();
     let mut latest = None;
+    let closing = f64::from(config.obstacle_speed_max) + f64::from(config.speed_max);
+    let hold_time = (f64::from(config.hold_time) * 1000.0) as u64;
     let (mut before, mut in_a_row, mut now) = (None, 0, 0_u64);
+    // The last echo that counted.
+    let mut echo: Option<(f32, u64)> = None;
     for _ in 0..STEPS {
         if bytes.is_empty() {
             break;
@@ -159,6 +163,22 @@ fn looks(bytes: &mut Bytes) {
             (true, false) => in_a_row + 1,
         };
         assert!(law::withheld_at_most_twice(in_a_row));
+        let (range, at) = latest;
+        let counts = handed_on == latest;
+        if let Some((last, gap)) = echo.and_then(|(last, then)| Some((last, at.checked_sub(then)?)))
+            && gap < hold_time
+        {
+            assert!(law::explained_counts_at_once(
+                range,
+                last,
+                gap,
+                closing,
+                counts || range.is_nan()
+            ));
+        }
+        if counts && range < config.sonar_range_max {
+            echo = Some(latest);
+        }
         before = Some(handed_on);
     }
 }

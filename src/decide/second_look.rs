@@ -41,6 +41,7 @@ impl<const N: usize> SecondLook<N> {
     /// The observation with the readings that count.
     //= decide.INV-16
     //= decide.INV-17
+    //= decide.INV-18
     #[must_use]
     pub fn judged(&mut self, observation: &Observation<N>, config: &Config) -> Observation<N> {
         let mut judged = *observation;
