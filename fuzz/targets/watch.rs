@@ -3,6 +3,7 @@
 use super::reference::{has_room, left_for_turn};
 use sidestep::config::Config;
 use sidestep::controller::{Controller, Decision};
+use sidestep::decide::SecondLook;
 use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::{Advice, Law};
 use sidestep::observation::{Observation, SonarReading};
@@ -47,6 +48,8 @@ pub struct Watched<L, const N: usize> {
     pub controller: Controller<L, N>,
     config: Config,
     ring: Ring<N>,
+    /// Which readings count. It is the controller's code: its own target judges it.
+    second_look: SecondLook<N>,
     guard: Guard,
     last: Command,
     last_tick: Option<Instant>,
@@ -98,6 +101,7 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             controller,
             config,
             ring,
+            second_look: SecondLook::default(),
             guard: Guard::new(&config),
             last: Command::REST,
             last_tick: None,
@@ -145,7 +149,8 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
     /// # Panics
     /// If a predicate is broken.
     pub fn tick(&mut self, observation: &Observation<N>) -> (Decision<N>, Option<Advice>) {
-        let trusted = self.can_be_trusted(observation);
+        let counts = self.second_look.judged(observation, &self.config);
+        let trusted = self.can_be_trusted(&counts);
         let elapsed = self
             .last_tick
             .and_then(|last| observation.now.since(last))
@@ -174,7 +179,7 @@ impl<L: Law<N> + Clone, const N: usize> Watched<L, N> {
             // The law is told of every stop but the one that its own advice causes.
             let told = view.guard == decision.stop;
             assert!(told || decision.stop == Some(StopReason::AdviceInvalid));
-            self.judge_view(view, observation);
+            self.judge_view(view, &counts);
             self.judge_motion(view, decision.command);
         }
         self.last = decision.command;

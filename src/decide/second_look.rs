@@ -84,7 +84,7 @@ impl Ear {
     }
 
     /// A reading is an echo from nearer than anything can be that was heard last, or that was out of
-    /// range if nothing was heard for `hold_time`. A contact, or what is no range at all, is none.
+    /// range if nothing was heard for `hold_time`. What is no range is none.
     fn appears(&self, latest: SonarSample, config: &Config) -> bool {
         let held = |echo: &SonarSample| {
             let gap = latest.taken_at.since(echo.taken_at)?;
@@ -95,8 +95,7 @@ impl Ear {
             .as_ref()
             .and_then(held)
             .unwrap_or((config.sonar_range_max, 0));
-        let contact = latest.range < config.sonar_range_min || latest.range <= 0.0;
-        !contact && latest.range < range - moved(gap, config)
+        latest.range > 0.0 && latest.range < range - moved(gap, config)
     }
 }
 
