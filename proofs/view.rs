@@ -6,6 +6,7 @@ use super::kani;
 use nalgebra::Vector2;
 use sidestep::avoid::ObstacleSpeed;
 use sidestep::config::{Config, Parameters};
+use sidestep::failsafe::StopReason;
 use sidestep::observation::{
     BaseStatus, Observation, OdometrySample, SonarReading, SonarSample, classify,
 };
@@ -377,7 +378,37 @@ pub fn any_look_is_taken_in() {
     }
 }
 
-/// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits.
+/// Nobody is followed.
+#[cfg(kani)]
+pub(crate) fn nobody_followed<const N: usize>(
+    _track: &mut Option<crate::track::Track>,
+    _sonar: &[SonarReading; N],
+    _fresh: &[bool; N],
+    _pose: &Pose,
+    _now: Instant,
+    _ring: &Ring<N>,
+    _config: &Config,
+) {
+}
+
+/// What comes of an observation of a robot with one sonar that has seen nothing yet.
+fn is_judged(observation: &Observation<1>) -> Result<View<1>, StopReason> {
+    let config = BLIND_PIONEER;
+    let ring = one_sonar(&config);
+    let goal = Vector2::new(5.0, 0.0);
+    let view = Memory::default().update(observation, goal, &ring, &config);
+    if let Ok(view) = view {
+        assert!(promise::judged(
+            view.speed,
+            view.goal.distance,
+            view.obstacle.map(|obstacle| obstacle.distance.get())
+        ));
+    }
+    view
+}
+
+/// Judging any observation neither panics nor overflows nor makes NaN, whatever the bits. Who is
+/// followed is `any_reading_is_followed`.
 //= view.INV-4
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
@@ -387,20 +418,44 @@ pub fn any_look_is_taken_in() {
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
 #[cfg_attr(kani, kani::stub(crate::view::EchoMemory::update, any_taken_in))]
+#[cfg_attr(kani, kani::stub(crate::track::follow, nobody_followed))]
 pub fn any_observation_is_judged() {
-    let config = BLIND_PIONEER;
-    let ring = one_sonar(&config);
-    let goal = Vector2::new(5.0, 0.0);
-    let mut memory = Memory::default();
-    let view = memory.update(&any_observation(), goal, &ring, &config);
-    if let Ok(view) = view {
-        assert!(promise::judged(
-            view.speed,
-            view.goal.distance,
-            view.obstacle.map(|obstacle| obstacle.distance.get())
-        ));
-        kani::cover!(view.obstacle.is_some(), "an obstacle");
-        kani::cover!(view.hazard[0].range < 1000, "something near");
-    }
+    let view = is_judged(&any_observation());
+    kani::cover!(
+        view.is_ok_and(|view| view.hazard[0].range < 1000),
+        "something near"
+    );
     kani::cover!(view.is_err(), "no odometry");
+}
+
+/// The same for a robot at rest at the origin, whatever its sonar hears and whenever: what is heard ahead
+/// is followed.
+//= view.INV-4
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+#[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
+#[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
+#[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::stub(crate::view::EchoMemory::update, any_taken_in))]
+pub fn any_reading_is_followed() {
+    let now = Instant(1000);
+    let view = is_judged(&Observation {
+        now,
+        sonar: [Some(any_sample())],
+        odometry: Some(OdometrySample {
+            x: 0.0,
+            y: 0.0,
+            heading: 0.0,
+            speed: 0.0,
+            turn_rate: 0.0,
+            taken_at: now,
+        }),
+        sighting: None,
+        base: clear_view().base,
+    });
+    let followed = view.is_ok_and(|view| view.obstacle.is_some());
+    kani::cover!(followed, "an obstacle");
+    kani::cover!(!followed, "none");
 }

@@ -181,12 +181,13 @@ impl Limits {
         }
     }
 
-    /// The speed bound of a class in mm/s for a turn: on the spot what stands still has its own,
-    /// since to turn gets the robot nowhere and is not worth betting on its staying there.
+    /// The speed bound of a class in mm/s for a turn: if that ends on the spot, what stands still has a
+    /// bound of its own, since to turn gets the robot nowhere and is not worth betting on its staying
+    /// there.
     #[must_use]
-    pub const fn class_speed_turning(&self, class: Class, on_the_spot: bool) -> i32 {
+    pub const fn class_speed_turning(&self, class: Class, ends_on_the_spot: bool) -> i32 {
         match class {
-            Class::Still if on_the_spot => self.still_speed_turning,
+            Class::Still if ends_on_the_spot => self.still_speed_turning,
             _ => self.class_speed(class),
         }
     }
@@ -287,8 +288,10 @@ impl Limits {
             return false;
         }
         // The turn ends |ω|/α after the reaction time; both sides multiplied by α.
-        let on_the_spot = plan.way == [0; 2];
-        let speed = self.class_speed_turning(hazard.class, on_the_spot);
+        let driving = i64::from(plan.time - self.reaction_time);
+        let outlasts =
+            1000 * i64::from(plan.turn_rate) > i64::from(self.turn_acceleration) * driving;
+        let speed = self.class_speed_turning(hazard.class, outlasts);
         let left = there - self.needed_at(speed, hazard, closing, plan, self.reaction_time);
         1000 * i64::from(speed) * i64::from(plan.turn_rate)
             <= i64::from(self.turn_acceleration) * left

@@ -157,7 +157,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
         turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
         stop_set_is_monotone;
-    view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_look_is_taken_in, any_observation_is_judged;
+    view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_look_is_taken_in, any_observation_is_judged, any_reading_is_followed;
 };
 
 /// Names of the harnesses in the source: functions below a `kani::proof`.

@@ -458,9 +458,9 @@ proptest! {
             return Ok(());
         };
         let rest = guard.plan(0, 0, &motion).map(|rest| Plan {
-            // Judged by the class that the command was judged by, which is the thing's own only for a
-            // robot with some way to go.
-            way: std::array::from_fn(|i| rest.way[i].max(plan.way[i].min(1))),
+            // Judged by the bound that the command was judged by: for all of the time that it was
+            // planned for.
+            time: plan.time,
             ..rest
         });
         let fits = limits.fits(&hazard, &closing, &plan);

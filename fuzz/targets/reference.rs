@@ -16,12 +16,18 @@ pub fn model(limits: &Limits, hazard: &Hazard) -> Model {
     }
 }
 
-/// The same for a turn: on the spot what stands still has a bound of its own.
+/// The same for a turn: if that outlasts the driving, what stands still has a bound of its own.
 fn turning(limits: &Limits, hazard: &Hazard, course: &Course) -> Model {
-    let bound = limits.class_speed_turning(hazard.class, course.fastest == [0.0; 2]);
+    let model = model(limits, hazard);
+    let slow = 1000.0 * course.turn_rate / f64::from(limits.turn_acceleration());
+    // The code rounds the time to rest up, to the next of 64 steps that it has it for.
+    let top = limits.speed_max() + 2 * limits.speed_gain() + limits.speed_error();
+    let step = 1000.0 * f64::from(top) / 64.0 / model.braking + 2.0;
+    let outlasts = slow > course.time - model.reaction_time + step;
+    let bound = limits.class_speed_turning(hazard.class, outlasts);
     Model {
         obstacle_speed: f64::from(bound),
-        ..model(limits, hazard)
+        ..model
     }
 }
 
