@@ -129,7 +129,7 @@ fn looks(bytes: &mut Bytes) {
             break;
         }
         let before_that = latest;
-        if latest.is_none() || bytes.u8() % 4 > 0 {
+        if latest.is_none() || !bytes.u8().is_multiple_of(4) {
             now = match bytes.u8() {
                 0xff => bytes.u64(),
                 gap => now.saturating_add(u64::from(gap)),
