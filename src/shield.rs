@@ -78,9 +78,12 @@ pub(crate) const fn milliseconds(seconds: f32) -> u64 {
     (seconds * 1000.0 + 0.5) as u64
 }
 
-/// dividend/divisor rounded up, for dividend ≥ 0 and divisor > 0.
+/// dividend/divisor rounded up, for dividend ≥ 0 and divisor > 0. A braking of 0 would never end.
 const fn divide_up(dividend: i32, divisor: i32) -> i32 {
-    (dividend + (divisor - 1)) / divisor
+    match (dividend + (divisor - 1)).checked_div(divisor) {
+        Some(quotient) => quotient,
+        None => i32::MAX,
+    }
 }
 
 /// Ways and times to rest are known for this many speeds.
