@@ -631,7 +631,8 @@ fn is_no_easier(hazard: &Hazard, worse: &Hazard, cosine: i32, way: [i32; 2]) {
 }
 
 /// SH.6: a turn on the spot that fits ends before contact with a person, whatever the thing's class;
-/// not to turn asks for no more than the class's own speed. Pioneer preset, any turn rate, any clearance, seen a tenth of a second ago.
+/// not to turn asks for no more than the class's own speed. Pioneer preset, any turn rate, any
+/// clearance, seen a tenth of a second ago.
 //= shield.INV-12
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
@@ -654,7 +655,12 @@ pub fn turn_ends_before_contact() {
         turn: 0,
         turn_rate: any_in(0, 20_000),
     };
-    let o = limits.class_speed_turning(hazard.class, plan.turn_rate > 0);
+    let class = if plan.turn_rate > 0 {
+        Class::Unknown
+    } else {
+        hazard.class
+    };
+    let o = limits.class_speed(class);
     if limits.fits(&hazard, &closing, &plan) {
         assert!(promise::turn_ends_before_contact(
             plan.turn_rate,

@@ -138,10 +138,11 @@ impl<L, const N: usize> Escape<L, N> {
 
     /// What an attempt asks for, or none if it is over.
     fn pursue(&mut self, view: &View<N>) -> Option<Advice> {
-        let room = self.room_to_goal(view);
-        let attempt = self.attempt.as_mut()?;
         // While it turns, the way to the goal may open: then there is no need to get away.
-        let opened = !attempt.driving && room >= OPEN.max(attempt.room + OPENED);
+        let opened = self.attempt.is_some_and(|attempt| {
+            !attempt.driving && self.room_to_goal(view) >= OPEN.max(attempt.room + OPENED)
+        });
+        let attempt = self.attempt.as_mut()?;
         let gone = math::norm(view.pose.position - attempt.from) >= WAY;
         let late = view
             .now

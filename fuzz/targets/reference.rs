@@ -19,11 +19,10 @@ pub fn model(limits: &Limits, hazard: &Hazard) -> Model {
 /// The same for a turn: if that outlasts the driving, what stands still has a bound of its own.
 fn turning(limits: &Limits, hazard: &Hazard, course: &Course) -> Model {
     let model = model(limits, hazard);
-    let slow = 1000.0 * course.turn_rate / f64::from(limits.turn_acceleration());
     // The code rounds the time to rest up, to the next of 64 steps that it has it for.
     let top = limits.speed_max() + 2 * limits.speed_gain() + limits.speed_error();
     let step = 1000.0 * f64::from(top) / 64.0 / model.braking + 2.0;
-    let outlasts = slow > course.time - model.reaction_time + step;
+    let outlasts = course.slowing(limits) > course.time - model.reaction_time + step;
     let bound = limits.class_speed_turning(hazard.class, outlasts);
     Model {
         obstacle_speed: f64::from(bound),
@@ -37,6 +36,13 @@ struct Course {
     fastest: [f64; 2],
     time: f64,
     turn_rate: f64,
+}
+
+impl Course {
+    /// How long the turn takes to end, ms: |ω|/α.
+    fn slowing(&self, limits: &Limits) -> f64 {
+        1000.0 * self.turn_rate / f64::from(limits.turn_acceleration())
+    }
 }
 
 fn course(model: &Model, motion: &Motion, twist: Twist) -> Course {
@@ -88,8 +94,7 @@ pub fn has_room(
     let course = course(&model, motion, twist);
     let clearance = f64::from(hazard.clearance);
     let driving = taken(&model, hazard, closing, &course, course.time);
-    let slow = 1000.0 * course.turn_rate / f64::from(limits.turn_acceleration());
-    let time = model.reaction_time + slow;
+    let time = model.reaction_time + course.slowing(limits);
     let turning = taken(
         &turning(limits, hazard, &course),
         hazard,
@@ -102,8 +107,8 @@ pub fn has_room(
     needed <= clearance + 1e-9 * needed
 }
 
-/// For a turn: the speed in mm/s that the thing may have, and what is left of the clearance, in thousandths of a millimetre, once the robot's own ways and
-/// the age are taken off.
+/// For a turn: the speed in mm/s that the thing may have, and what is left of the clearance, in
+/// thousandths of a millimetre, once the robot's own ways and the age are taken off.
 #[must_use]
 pub fn left_for_turn(
     limits: &Limits,
