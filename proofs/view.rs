@@ -391,6 +391,40 @@ pub(crate) fn nobody_followed<const N: usize>(
 ) {
 }
 
+/// No sonar says anything of another.
+#[cfg(kani)]
+pub(crate) fn no_witness<const N: usize>(
+    _memory: &Memory<N>,
+    _sonar: &[SonarReading; N],
+    _observation: &Observation<N>,
+    _pose: Option<Pose>,
+    _ring: &Ring<N>,
+    _config: &Config,
+) -> [Witness; N] {
+    [Witness::default(); N]
+}
+
+/// No wall beside the robot is looked for.
+#[cfg(kani)]
+pub(crate) fn no_walls<const N: usize>(
+    _readings: &[SonarReading; N],
+    _agrees: &[bool; N],
+    _ring: &Ring<N>,
+    _config: &Config,
+) -> [Option<crate::wall::Wall>; 2] {
+    [None; 2]
+}
+
+/// The room to either side is not measured.
+#[cfg(kani)]
+pub(crate) fn no_room<const N: usize>(
+    _sonar: &[SonarReading; N],
+    _ring: &Ring<N>,
+    _config: &Config,
+) -> [Length; 2] {
+    [Length::ZERO; 2]
+}
+
 /// What comes of an observation of a robot with one sonar that has seen nothing yet.
 fn is_judged(observation: &Observation<1>) -> Result<View<1>, StopReason> {
     let config = BLIND_PIONEER;
@@ -429,7 +463,7 @@ pub fn any_observation_is_judged() {
 }
 
 /// The same for a robot at rest at the origin, whatever its sonar hears and whenever: what is heard ahead
-/// is followed.
+/// is followed. Walls, room and witnesses are in `any_observation_is_judged`.
 //= view.INV-4
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(cadical))]
@@ -439,6 +473,10 @@ pub fn any_observation_is_judged() {
 #[cfg_attr(kani, kani::stub(crate::math::atan2, crate::proofs::math::any_atan2))]
 #[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
 #[cfg_attr(kani, kani::stub(crate::view::EchoMemory::update, any_taken_in))]
+#[cfg_attr(kani, kani::stub(crate::view::Memory::witnesses, no_witness))]
+#[cfg_attr(kani, kani::stub(crate::wall::Wall::beside, no_walls))]
+#[cfg_attr(kani, kani::stub(crate::view::beside, no_room))]
+#[cfg_attr(kani, kani::stub(crate::view::room, no_room))]
 pub fn any_reading_is_followed() {
     let now = Instant(1000);
     let view = is_judged(&Observation {

@@ -32,7 +32,7 @@ pub const SRIKANDI_II_2012: Parameters = Parameters {
     reverse_speed_max: 0.0,
     turn_acceleration: PI,
     reaction_time: 0.32,
-    still_speed_max: 0.45,
+    still_speed_max: 0.5,
     still_speed_max_turning: 0.8,
     still_samples: 10.0,
     still_tolerance: 0.05,

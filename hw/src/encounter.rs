@@ -4,9 +4,7 @@
 use crate::base;
 use crate::config::RobotConfig;
 use crate::draw::{Picture, Stop, draw_with_events};
-use crate::episodes::{
-    Random, Report, Ride, Tell, assumptions, decided, describe, explained, note_people, pilot,
-};
+use crate::episodes::{Random, Report, Ride, Tell, describe, pilot, record};
 use crate::pilot::settings;
 use sidestep::gesture::Gesture;
 use sidestep::interact::{
@@ -276,19 +274,16 @@ pub fn run_with(
     config: &RobotConfig,
     parameters: sidestep::interact::Parameters,
     camera: &mut dyn Camera,
-    mut tell: Tell<'_>,
+    tell: Tell<'_>,
 ) -> Result<Met, Box<dyn Error>> {
     let scenario = &encounter.scenario;
     let seed = scenario.seed;
     let law = law(config, parameters)?;
     let pilot = pilot(scenario, config, settings(config, false, None), law)?;
-    let mut ride = Ride::new(scenario.simulate()?, pilot, encounter.link, seed)?;
+    let ride = Ride::new(scenario.simulate()?, pilot, encounter.link, seed)?;
     let mut cues = Cues::default();
     let mut happenings = Vec::new();
-    let (mut ticks, mut ticks_stopped) = (0, 0);
-    let mut people = Vec::new();
-    while ride.now() < scenario.time_limit_ms {
-        ride.step();
+    let run = record(ride, scenario.clone(), config, tell, |ride| {
         let now = ride.now();
         if encounter.camera_fails.is_none_or(|fails| now < fails) {
             let pose = ride.simulation.robot().base().pose();
@@ -303,46 +298,12 @@ pub fn run_with(
             cues.take(&event, now);
             happenings.push(Happening { t: now, event });
         }
-        let tally = ride.host.tally();
-        if tally.arrived.is_some() {
-            break;
-        }
-        let stopped = ride.host.latest().is_some_and(|d| d.stop.is_some());
-        ticks_stopped += if stopped { tally.ticks - ticks } else { 0 };
-        if tally.ticks > ticks {
-            note_people(&ride, &mut people);
-            if let Some(tell) = &mut tell {
-                tell(decided(&ride));
-            }
-        }
-        ticks = tally.ticks;
-    }
-    let mut broken = ride.simulation.truth().broken(&assumptions(config));
-    broken.extend(explained(
-        ride.simulation.moving_contacts(),
-        &people,
-        config.core.still_speed_max.into(),
-    ));
-    let tally = ride.host.tally();
-    let stops = ride.host.stops().iter().map(|stop| Stop {
-        t: stop.t,
-        reason: stop.reason.to_string(),
     });
     Ok(Met {
-        report: Report {
-            seed,
-            kind: scenario.name,
-            outcome: ride.simulation.outcome(),
-            contacts: ride.simulation.moving_contacts().to_vec(),
-            broken,
-            stops: tally.stops.clone(),
-            ticks_stopped,
-            ticks,
-            arrived: tally.arrived.is_some(),
-        },
-        stops: stops.collect(),
-        scenario: scenario.clone(),
-        simulation: ride.simulation,
+        report: run.report,
+        stops: run.stops,
+        scenario: run.scenario,
+        simulation: run.simulation,
         happenings,
     })
 }

@@ -470,7 +470,7 @@ fn run_with<L: Law<16>>(
     options: &Options,
     config: &RobotConfig,
     law: L,
-    mut tell: Tell<'_>,
+    tell: Tell<'_>,
 ) -> Result<Run, Box<dyn Error>> {
     let episode = Episode::new(seed, options)?;
     let pilot = pilot(
@@ -479,11 +479,24 @@ fn run_with<L: Law<16>>(
         settings(config, false, None),
         law,
     )?;
-    let mut ride = Ride::new(episode.simulate()?, pilot, episode.link, seed)?;
+    let ride = Ride::new(episode.simulate()?, pilot, episode.link, seed)?;
+    Ok(record(ride, episode.scenario, config, tell, |_| {}))
+}
+
+/// Rides until the robot has arrived or the time of `scenario` is over, and reports. `after_step` is
+/// for what else happens in each step.
+pub(crate) fn record<L: Law<16>>(
+    mut ride: Ride<Pilot<L, 16>>,
+    scenario: Scenario,
+    config: &RobotConfig,
+    mut tell: Tell<'_>,
+    mut after_step: impl FnMut(&mut Ride<Pilot<L, 16>>),
+) -> Run {
     let (mut ticks, mut ticks_stopped) = (0, 0);
     let mut people = Vec::new();
-    while ride.now() < episode.scenario.time_limit_ms {
+    while ride.now() < scenario.time_limit_ms {
         ride.step();
+        after_step(&mut ride);
         let tally = ride.host.tally();
         if tally.arrived.is_some() {
             break;
@@ -509,10 +522,10 @@ fn run_with<L: Law<16>>(
         t: stop.t,
         reason: stop.reason.to_string(),
     });
-    Ok(Run {
+    Run {
         report: Report {
-            seed,
-            kind: episode.scenario.name,
+            seed: scenario.seed,
+            kind: scenario.name,
             outcome: ride.simulation.outcome(),
             contacts: ride.simulation.moving_contacts().to_vec(),
             broken,
@@ -522,9 +535,9 @@ fn run_with<L: Law<16>>(
             arrived: tally.arrived.is_some(),
         },
         stops: stops.collect(),
-        scenario: episode.scenario,
+        scenario,
         simulation: ride.simulation,
-    })
+    }
 }
 
 /// Somebody at one moment, as far as it matters to the shield.
@@ -538,7 +551,7 @@ pub(crate) struct Seen {
 }
 
 /// Notes how fast people are, and who is where the shield believes that something stands still.
-pub(crate) fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
+fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<Seen>) {
     let Some(view) = ride.host.latest().and_then(|decision| decision.view) else {
         return;
     };
@@ -574,7 +587,7 @@ pub(crate) fn note_people<L: Law<16>>(ride: &Ride<Pilot<L, 16>>, seen: &mut Vec<
 const BREACH_MS: u64 = 1000;
 
 /// The class bound that was broken, if that explains every one of these contacts.
-pub(crate) fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
+fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -> Option<Broken> {
     let mut was: f64 = 0.0;
     for contact in contacts {
         let Body::Person(person) = contact.body else {
@@ -602,7 +615,7 @@ pub(crate) fn explained(contacts: &[MovingContact], seen: &[Seen], bound: f64) -
 }
 
 /// What was decided last, and how things truly are.
-pub(crate) fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
+fn decided<L: Law<16>>(ride: &Ride<Pilot<L, 16>>) -> String {
     let base = ride.simulation.robot().base();
     let pose = base.pose();
     let mut line = format!(
