@@ -774,6 +774,50 @@ proptest! {
     }
 }
 
+/// A view of nothing but somebody straight ahead who comes at 0.3 m/s, seen by a robot at rest; 100 mm
+/// of the distance are not way.
+fn approached(now: u64, distance: f32, config: &Config, ring: &Ring<3>) -> View<3> {
+    let observation = in_order(now, [5.0; 3]);
+    let view = Memory::default().update(&observation, [5.0, 0.0].into(), ring, config);
+    let mut view = view.expect("odometry");
+    view.obstacle = Some(Obstacle {
+        distance: Length::metres(distance).expect("a length"),
+        contact_range: 100,
+        direction: Angle::ZERO,
+        position: [distance, 0.0].into(),
+        trend: Trend::Closing,
+        speed: ObstacleSpeed {
+            value: Speed::metres_per_second(0.3).expect("a speed"),
+            saturated: false,
+        },
+        visible: true,
+        seen_now: true,
+    });
+    view
+}
+
+/// What the robot may have gained since its speed was measured counts, for no longer than the reaction
+/// time, and so does the error of the measurement.
+//= shield.INV-8
+#[test]
+fn an_old_speed_may_have_grown() {
+    let (config, ring) = pioneer_with::<3>();
+    let closing_at = |age: u64| {
+        let mut view = approached(10_000, 0.2, &config, &ring);
+        view.speed = 0.2;
+        view.odometry_age = age;
+        match Shield::new(&config).assess(&view, &ring) {
+            Some(StopReason::ContactTime { closing, .. }) => closing,
+            other => panic!("{other:?}"),
+        }
+    };
+    // 300 of theirs, 200 of its own, 50 of error, and 300 mm/s² for so many ms.
+    assert_eq!(closing_at(0), 550);
+    assert_eq!(closing_at(100), 580);
+    assert_eq!(closing_at(220), 616);
+    assert_eq!(closing_at(400), 616);
+}
+
 /// A stop for want of time ends when there is the resume clearance on top of what it demands, for
 /// as many ticks in a row as it takes.
 //= shield.INV-8
@@ -784,22 +828,7 @@ fn time_to_contact_has_hysteresis() {
     let mut now = 10_000;
     let mut stop_at = |distance: f32| {
         now += 100;
-        let observation = in_order(now, [5.0; 3]);
-        let view = Memory::default().update(&observation, [5.0, 0.0].into(), &ring, &config);
-        let mut view = view.expect("odometry");
-        view.obstacle = Some(Obstacle {
-            distance: Length::metres(distance).expect("a length"),
-            contact_range: 100,
-            direction: Angle::ZERO,
-            position: [distance, 0.0].into(),
-            trend: Trend::Closing,
-            speed: ObstacleSpeed {
-                value: Speed::metres_per_second(0.3).expect("a speed"),
-                saturated: false,
-            },
-            visible: true,
-            seen_now: true,
-        });
+        let view = approached(now, distance, &config, &ring);
         shield.assess(&view, &ring)
     };
     assert_eq!(config.resume_clearance, 0.05);

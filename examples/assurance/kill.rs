@@ -32,8 +32,7 @@ enum Fate {
 
 /// `kill MODULE [N]`: N mutants of the module, spread evenly, or all of them.
 pub fn run(module: &str, words: &[&str]) -> Outcome {
-    let file = format!("src/{module}.rs");
-    let mutants = mutants(&file)?;
+    let mutants = mutants(module)?;
     let wanted = words
         .first()
         .map_or(Ok(mutants.len()), |word| word.parse())?;
@@ -43,21 +42,23 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
     let rounds = rounds(module, &harnesses);
     let copy = copy()?;
     eprintln!(
-        "{} of {} mutants of {file}, {} harnesses",
+        "{} of {} mutants of `{module}`, {} harnesses",
         chosen.len(),
         mutants.len(),
         rounds.iter().map(Vec::len).sum::<usize>()
     );
-    let original = std::fs::read_to_string(root().join(&file))?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     println!(
-        "## Mutants of `{file}`, judged by proofs alone\n\n| mutant | noticed by |\n|---|---|"
+        "## Mutants of `{module}`, judged by proofs alone\n\n| mutant | noticed by |\n|---|---|"
     );
     for (number, mutant) in chosen.iter().enumerate() {
         let name = mutant["name"].as_str().unwrap_or_default();
         let begun = Instant::now();
-        std::fs::write(copy.join(&file), mutated(&original, mutant)?)?;
+        let file = mutant["file"].as_str().ok_or("a mutant without a file")?;
+        let original = std::fs::read_to_string(root().join(file))?;
+        std::fs::write(copy.join(file), mutated(&original, mutant)?)?;
         let fate = judge(&copy, &rounds, &harnesses)?;
+        std::fs::write(copy.join(file), &original)?;
         let (kind, shown) = match &fate {
             Fate::Noticed(by) => ("noticed", by.clone()),
             Fate::Unviable => ("unviable", "does not compile".to_owned()),
@@ -73,7 +74,6 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
             begun.elapsed().as_secs_f64()
         );
     }
-    std::fs::write(copy.join(&file), &original)?;
     let of = |kind| counts.get(kind).copied().unwrap_or(0);
     println!(
         "\n{} noticed, {} survived, {} undecided, {} do not compile; {} of {} mutants tried.",
@@ -87,10 +87,12 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
     Ok(())
 }
 
-/// The mutants of a file, as `cargo mutants` lists them.
-fn mutants(file: &str) -> Outcome<Vec<Value>> {
+/// The mutants of a module, as `cargo mutants` lists them.
+fn mutants(module: &str) -> Outcome<Vec<Value>> {
+    let [file, folder] = [format!("src/{module}.rs"), format!("src/{module}/**/*.rs")];
     let output = Command::new("cargo")
-        .args(["mutants", "--list", "--json", "--file", file])
+        .args(["mutants", "--list", "--json"])
+        .args(["--file", &file, "--file", &folder])
         .current_dir(root())
         .output()?;
     if !output.status.success() {
