@@ -77,6 +77,84 @@ fn any_class() -> Class {
     }
 }
 
+/// What limits the robot is rounded down: any greatest speed of backing off.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn limits_are_rounded_down() {
+    let reverse: f32 = kani::any();
+    let limits = limits_with(|p| p.reverse_speed_max = reverse);
+    assert!(promise::rounded_down(
+        limits.reverse_speed_max(),
+        reverse.into()
+    ));
+    kani::cover!(
+        limits.reverse_speed_max() == 0 && reverse > 0.0,
+        "hardly any"
+    );
+    kani::cover!(limits.reverse_speed_max() == 500, "the fastest");
+}
+
+/// What is against it is rounded up: any error of the measured speed.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn limits_are_rounded_up() {
+    let error: f32 = kani::any();
+    let limits = limits_with(|p| p.speed_error = error);
+    assert!(promise::rounded_up(limits.speed_error(), error.into()));
+    kani::cover!(limits.speed_error() == 1, "hardly any");
+    kani::cover!(limits.speed_error() == 500, "the most there may be");
+}
+
+/// Each limit of each preset is its own parameter, rounded to the safe side.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn limits_of_presets() {
+    const WEAK: Config = checked(Parameters {
+        braking_share: 0.7,
+        still_speed_max: 0.25,
+        ..preset::PIONEER_3DX
+    });
+    for config in [super::view::PIONEER, WEAK, SRIKANDI_2012, SRIKANDI_2011] {
+        let limits = Limits::new(&config);
+        for (limit, configured) in [
+            (limits.speed_max(), config.speed_max.into()),
+            (limits.reverse_speed_max(), config.reverse_speed_max.into()),
+            (limits.turn_rate_max(), config.turn_rate_max.into()),
+            (
+                limits.braking(),
+                f64::from(config.braking) * f64::from(config.braking_share),
+            ),
+            (limits.turn_acceleration(), config.turn_acceleration.into()),
+        ] {
+            assert!(promise::rounded_down(limit, configured));
+        }
+        let turning = |class, outlasts| limits.class_speed_turning(class, outlasts);
+        for (limit, configured) in [
+            (
+                limits.class_speed(Class::Unknown),
+                config.obstacle_speed_max,
+            ),
+            (turning(Class::Unknown, false), config.obstacle_speed_max),
+            (turning(Class::Unknown, true), config.obstacle_speed_max),
+            (limits.class_speed(Class::Still), config.still_speed_max),
+            (turning(Class::Still, false), config.still_speed_max),
+            (turning(Class::Still, true), config.still_speed_max_turning),
+            (limits.acceleration(), config.acceleration),
+            (limits.reaction_time(), config.reaction_time),
+            (limits.speed_error(), config.speed_error),
+            (limits.stop_time(), config.stop_time),
+        ] {
+            assert!(promise::rounded_up(limit, configured.into()));
+        }
+    }
+}
+
 /// Way and time to rest are no less than the formula, for a preset and every speed it may have.
 fn rest_is_covered(limits: Limits) {
     let fastest = any_in(0, limits.speed_max() + limits.speed_gain());

@@ -70,6 +70,24 @@ pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_tim
     2000 * b * x >= 2 * b * w * e + 1000 * w * w && b * t >= b * e + 1000 * w
 }
 
+/// What f32 products of lengths up to 20 m and speeds up to 20 m/s round, in thousandths.
+const ROUNDED: f64 = 1.0 / 256.0;
+
+/// shield.INV-2: a whole number of thousandths is no more than what is configured, and less by no
+/// more than a whole one.
+#[must_use]
+pub fn rounded_down(thousandths: i32, configured: f64) -> bool {
+    let short = 1000.0 * configured - f64::from(thousandths);
+    (-ROUNDED..1.0 + ROUNDED).contains(&short)
+}
+
+/// shield.INV-2: a whole number of thousandths is no less than what is configured, and more by no
+/// more than a whole one.
+#[must_use]
+pub fn rounded_up(thousandths: i32, configured: f64) -> bool {
+    rounded_down(-thousandths, -configured)
+}
+
 /// SH.1, the safe state, exactly: braking now ends before contact, κ·v²/2b + V·v/b ≤ r. Cosine in
 /// thousandths, `left` in thousandths of a millimetre.
 #[must_use]
