@@ -4,14 +4,16 @@
 use super::kani;
 use super::view::checked;
 use sidestep::config::{Config, Parameters};
+use sidestep::failsafe::{Action, StopReason};
 use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
+use sidestep::quantity::Instant;
 use sidestep::ring::Closing;
 use sidestep::shield::{
     Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
 };
-use sidestep::view::{Class, Hazard};
+use sidestep::view::{Class, Hazard, View};
 use sidestep_spec::shield as promise;
 
 /// The presets, checked.
@@ -848,6 +850,115 @@ pub fn any_law_is_shielded() {
     kani::cover!(command.turn_rate() < 0, "it turns");
     kani::cover!(stop.is_none() && verdict.stop.is_some(), "bad advice");
     kani::cover!(!trusted, "a bad view");
+}
+
+/// There is room for everything.
+pub fn always_fits(_limits: &Limits, _hazard: &Hazard, _closing: &Closing, _plan: &Plan) -> bool {
+    true
+}
+
+/// Nothing comes within reach in time.
+pub fn no_contact(_limits: &Limits, _distance: i32, _closing: i32) -> bool {
+    false
+}
+
+/// A plan there is, whatever it says.
+pub fn some_plan(guard: &Guard, speed: i32, turn_rate: i32, motion: &Motion) -> Option<Plan> {
+    let plan = any_plan(guard, speed, turn_rate, motion);
+    kani::assume(plan.is_some());
+    plan
+}
+
+/// What a view of one sonar shows, for a robot that is to stand at `least` mm.
+fn signs(view: &View<1>, least: i32, elapsed: i64, moving: bool) -> promise::Signs {
+    promise::Signs {
+        base: !view.base.motors_enabled || view.base.stalled || view.base.emergency_stop,
+        untrusted: !matches!(
+            view.sonar[0],
+            SonarReading::Echo(_) | SonarReading::NoEcho(_)
+        ),
+        ahead: [view.hazard[0].range, least],
+        saturated: view
+            .obstacle
+            .is_some_and(|obstacle| obstacle.speed.saturated),
+        elapsed: [elapsed, 220],
+        stuck: view.hazard[0].stuck,
+        moving,
+    }
+}
+
+/// A robot that was told to drive, turn or rest is stopped by any sign that demands it, and, where there
+/// is room, by no other view; what is to be latched is latched at once.
+//= shield.INV-16
+//= shield.INV-17
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::needed, any_needed))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::contact_within_stop_time, no_contact)
+)]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, any_admission))]
+pub fn every_cause_stops() {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = Shield::new(&config);
+    let clear = super::view::clear_view();
+    kani::assume(shield.assess(&clear, &ring).is_none());
+    let advice = Advice {
+        speed: 0.4,
+        turn_rate: 1.0,
+    };
+    let told = shield.admit(advice, &clear, &ring).command;
+    let moving = told.speed() != 0 || told.turn_rate() != 0;
+    let mut view = super::view::any_view();
+    let elapsed: i16 = kani::any();
+    view.now = Instant(clear.now.0.saturating_add_signed(elapsed.into()));
+    let elapsed = view.now.0 as i64 - clear.now.0 as i64;
+    let signs = signs(&view, 400, elapsed, moving);
+    let stop = shield.assess(&view, &ring);
+    assert!(promise::every_cause_stops(&signs, stop.is_some()));
+    assert!(promise::nothing_else_stops(&signs, true, stop.is_some()));
+    let latches = stop.is_some_and(|stop| stop.action() == Action::LatchedStop);
+    assert!(shield.is_latched() == latches);
+    kani::cover!(stop.is_none() && moving, "it goes on");
+    kani::cover!(latches, "latched");
+    kani::cover!(matches!(stop, Some(StopReason::LoopLate { .. })), "late");
+}
+
+/// A robot that is stopped stays so for any sign, with more distance ahead asked for, and otherwise, where
+/// there is room, one view ends it.
+//= shield.INV-16
+//= shield.INV-17
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::needed, any_needed))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::contact_within_stop_time, no_contact)
+)]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+pub fn a_stop_ends() {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = Shield::new(&config);
+    let view = super::view::any_view();
+    let signs = signs(&view, 450, 0, false);
+    let stop = shield.assess(&view, &ring);
+    assert!(promise::every_cause_stops(&signs, stop.is_some()));
+    assert!(promise::nothing_else_stops(&signs, true, stop.is_some()));
+    kani::cover!(stop.is_none(), "free");
+    kani::cover!(
+        matches!(stop, Some(StopReason::MinDistance { range: 450, .. })),
+        "not far enough"
+    );
 }
 
 /// SH.4: if contact is possible at any time within the stop time, the guard stops. In integers:

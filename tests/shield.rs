@@ -657,9 +657,42 @@ fn sensible(advice: Advice) -> bool {
     advice.speed.abs() <= 10.0 && advice.turn_rate.abs() <= 20.0
 }
 
+/// What a view shows to a robot that was last told this.
+fn signs(
+    config: &Config,
+    ring: &Ring<16>,
+    view: &View<16>,
+    last: (i32, i32),
+    elapsed: u64,
+) -> promise::Signs {
+    let thousandths = |value: f32| (value * 1000.0).ceil() as i32;
+    let readable =
+        |reading: &SonarReading| matches!(reading, SonarReading::Echo(_) | SonarReading::NoEcho(_));
+    let ahead = ring.sonars().iter().zip(&view.hazard);
+    let ahead = ahead.filter(|(at, _)| at.forward);
+    promise::Signs {
+        base: !view.base.motors_enabled || view.base.stalled || view.base.emergency_stop,
+        untrusted: !view.sonar.iter().all(readable),
+        ahead: [
+            ahead
+                .map(|(_, hazard)| hazard.range)
+                .min()
+                .expect("a sonar ahead"),
+            thousandths(config.min_distance),
+        ],
+        saturated: view
+            .obstacle
+            .is_some_and(|obstacle| obstacle.speed.saturated),
+        elapsed: [elapsed as i64, thousandths(config.reaction_time).into()],
+        stuck: view.hazard.iter().any(|hazard| hazard.stuck),
+        moving: last != (0, 0),
+    }
+}
+
 /// A tick through the shield, judged by every predicate that a view and a verdict fall under.
 fn judged_tick(
     shield: &mut Shield,
+    config: &Config,
     ring: &Ring<16>,
     view: &View<16>,
     last: (i32, i32),
@@ -668,7 +701,9 @@ fn judged_tick(
 ) -> Verdict {
     let limits = *shield.limits();
     let was_latched = shield.is_latched();
+    let signs = signs(config, ring, view, last, elapsed);
     let assessed = shield.assess(view, ring);
+    assert!(promise::every_cause_stops(&signs, assessed.is_some()));
     let verdict = shield.admit(advice, view, ring);
     let (speed, turn_rate) = (verdict.command.speed(), verdict.command.turn_rate());
     assert!(promise::within_limits(
@@ -729,7 +764,7 @@ fn through(config: &Config, ticks: Vec<(View<16>, u64, Advice)>) -> u32 {
     for (mut view, elapsed, advice) in ticks {
         now += elapsed;
         view.now = Instant(now);
-        let verdict = judged_tick(&mut shield, &ring, &view, last, elapsed, advice);
+        let verdict = judged_tick(&mut shield, &config, &ring, &view, last, elapsed, advice);
         last = (verdict.command.speed(), verdict.command.turn_rate());
         drives += u32::from(last.0 != 0);
         if now % 7 == 0 {
@@ -748,6 +783,7 @@ proptest! {
     //= shield.INV-6
     //= shield.INV-13
     //= shield.INV-15
+    //= shield.INV-16
     #[test]
     fn any_law_is_shielded(
         config in usual_or_any_config(),
@@ -766,6 +802,57 @@ proptest! {
         ticks in proptest::collection::vec(tick_in_order(), 60),
     ) {
         through(&config, ticks);
+    }
+}
+
+proptest! {
+    #![proptest_config(common::cases(600))]
+
+    /// Views with room all round: whatever else they say, a robot is stopped by a sign that demands it
+    /// and by nothing else, and ticks without one free it.
+    //= shield.INV-16
+    //= shield.INV-17
+    #[test]
+    fn nothing_else_stops(
+        config in usual_or_any_config(),
+        ticks in proptest::collection::vec(prop_oneof![any_tick(), tick_in_order()], 1..20),
+    ) {
+        let (config, ring) = settings::fitted::<16>(&config);
+        let mut shield = Shield::new(&config);
+        let (mut now, mut last) = (10_000, (0, 0));
+        let mut free = 0;
+        for (mut view, elapsed, advice) in ticks {
+            now += elapsed;
+            view.now = Instant(now);
+            for hazard in &mut view.hazard {
+                *hazard = Hazard { stuck: hazard.stuck, range: hazard.range, ..FAR };
+            }
+            if let Some(obstacle) = &mut view.obstacle {
+                obstacle.distance = Length::MAX;
+                obstacle.contact_range = 0;
+                obstacle.speed.value = Speed::ZERO;
+            }
+            // At rest, as measured: brakes are the monitor's.
+            view.speed = 0.0;
+            let was_latched = shield.is_latched();
+            let was_stopped = free < config.resume_samples as u32;
+            let mut signs = signs(&config, &ring, &view, last, elapsed);
+            if was_stopped {
+                signs.ahead[1] += (config.resume_clearance * 1000.0).ceil() as i32;
+            }
+            free = if signs.demand_a_stop() { 0 } else { free + 1 };
+            let stopped = shield.assess(&view, &ring).is_some();
+            prop_assert!(promise::every_cause_stops(&signs, stopped));
+            let freed = free >= config.resume_samples as u32;
+            if !was_latched {
+                prop_assert!(promise::nothing_else_stops(&signs, freed, stopped));
+            }
+            let command = shield.admit(advice, &view, &ring).command;
+            last = (command.speed(), command.turn_rate());
+            if !sensible(advice) {
+                free = 0;
+            }
+        }
     }
 }
 
@@ -1020,6 +1107,41 @@ fn backs_off_where_it_looks() {
     // What is still may come after it, so it need not be the most.
     assert!((-most..=-most / 2).contains(&fastest_back::<16>()));
     assert_eq!(fastest_back::<8>(), 0);
+}
+
+/// A robot that is stopped for something ahead turns on the spot if that is what the law advises, and
+/// does nothing if it would drive on.
+//= shield.INV-4
+#[test]
+fn a_stopped_robot_turns_on_the_spot() {
+    let (config, ring) = pioneer_with::<8>();
+    let turned = |speed: f32| {
+        let mut shield = Shield::new(&config);
+        let mut memory = Memory::default();
+        let mut command = Command::REST;
+        for tick in 0..5 {
+            let mut ranges = [5.0; 8];
+            ranges[3] = 0.42;
+            let observation = in_order(10_000 + 100 * tick, ranges);
+            let view = memory.update(&observation, [5.0, 0.0].into(), &ring, &config);
+            let view = view.expect("odometry");
+            shield.assess(&view, &ring);
+            let advice = Advice {
+                speed,
+                turn_rate: 1.0,
+            };
+            let verdict = shield.admit(advice, &view, &ring);
+            assert!(matches!(
+                verdict.stop,
+                Some(StopReason::MinDistance { sonar: 3, .. })
+            ));
+            command = verdict.command;
+        }
+        (command.speed(), command.turn_rate())
+    };
+    let (speed, turn_rate) = turned(0.0);
+    assert!(speed == 0 && turn_rate > 0, "{turn_rate}");
+    assert_eq!(turned(0.2), (0, 0));
 }
 
 /// With room all round a robot does what it is advised, either way, after it has come up to it.

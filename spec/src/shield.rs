@@ -207,3 +207,53 @@ pub fn worse_is_no_easier(fits: bool, fits_worse: bool) -> bool {
 pub fn sees_where_it_goes(speed: i32, looks_back: bool) -> bool {
     speed >= 0 || looks_back
 }
+
+/// What a tick shows that stops the robot by itself.
+#[derive(Clone, Copy, Debug)]
+pub struct Signs {
+    /// The base: the emergency stop, a stall, or motors that are off.
+    pub base: bool,
+    /// A sonar that is stale, invalid or in contact.
+    pub untrusted: bool,
+    /// The least range held ahead, mm, and the one at which the robot is to stand.
+    pub ahead: [i32; 2],
+    /// Something moves faster than can be measured.
+    pub saturated: bool,
+    /// The time since the tick before, ms, below zero if the clock went back, and the longest there may
+    /// be while the robot moves.
+    pub elapsed: [i64; 2],
+    /// A sonar that is stuck.
+    pub stuck: bool,
+    /// The robot has been told to move.
+    pub moving: bool,
+}
+
+impl Signs {
+    /// Whether any of them demands a stop.
+    #[must_use]
+    pub fn demand_a_stop(&self) -> bool {
+        let Self {
+            ahead: [range, least],
+            elapsed: [elapsed, longest],
+            ..
+        } = *self;
+        self.base
+            || self.untrusted
+            || self.saturated
+            || range <= least
+            || elapsed < 0
+            || (self.moving && (self.stuck || elapsed > longest))
+    }
+}
+
+/// shield.INV-16: a tick that shows any of them stops the robot.
+#[must_use]
+pub fn every_cause_stops(signs: &Signs, stopped: bool) -> bool {
+    stopped || !signs.demand_a_stop()
+}
+
+/// shield.INV-17: where there is room, nothing else stops a robot that drives, or keeps one stopped.
+#[must_use]
+pub fn nothing_else_stops(signs: &Signs, room: bool, stopped: bool) -> bool {
+    !stopped || !room || signs.demand_a_stop()
+}
