@@ -148,7 +148,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     valley: share_is_a_share,
         order_makes_no_difference;
     monitor: bound_follows_the_commands, three_in_a_row_accuse;
-    shield: rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
+    shield: limits_are_rounded_down, limits_are_rounded_up, limits_of_presets, every_cause_stops, a_stop_ends, rest_is_covered_pioneer, rest_is_covered_2012, rest_is_covered_2011,
         rest_does_not_overflow, plan_covers_command, plan_covers_motion,
         admitted_motion_stays_safe_pioneer, admitted_motion_stays_safe_still,
         admitted_motion_stays_safe_2012, admitted_motion_stays_safe_2011, fits_by_clearance,

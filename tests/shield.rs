@@ -221,7 +221,8 @@ proptest! {
         }
         let rate = i64::from(twist.turn_rate.abs().max(motion.turn_rate));
         prop_assert_eq!(i64::from(plan.turn_rate), rate);
-        prop_assert!(i64::from(plan.turn) * 1000 >= (rate * i64::from(plan.time)).min(10_000_000));
+        let turn = (rate * i64::from(plan.time)).min(10_000_000);
+        prop_assert!((turn..turn + 1000).contains(&(i64::from(plan.turn) * 1000)));
     }
 
     /// What fits in integers fits exactly.
@@ -900,6 +901,101 @@ fn an_old_speed_may_have_grown() {
     assert_eq!(closing_at(400), 616);
 }
 
+/// A shield that has let the robot set off in the open, as advised in m/s, and its last command, at 10,700 ms.
+fn under_way<const N: usize>(advised: f32, config: &Config, ring: &Ring<N>) -> (Shield, Command) {
+    let mut shield = Shield::new(config);
+    let mut memory = Memory::default();
+    let mut command = Command::REST;
+    for tick in 0..8 {
+        let observation = in_order(10_000 + 100 * tick, [5.0; N]);
+        let view = memory.update(&observation, [5.0, 0.0].into(), ring, config);
+        let view = view.expect("odometry");
+        shield.assess(&view, ring);
+        let advice = Advice {
+            speed: advised,
+            turn_rate: 0.0,
+        };
+        command = shield.admit(advice, &view, ring).command;
+    }
+    (shield, command)
+}
+
+/// A robot under way is stopped by a tick later than the reaction time, and not by one just then.
+//= shield.INV-16
+//= shield.INV-17
+#[test]
+fn a_late_tick_stops() {
+    let (config, ring) = pioneer_with::<8>();
+    let stop_after = |pause: u64| {
+        let (mut shield, command) = under_way(0.2, &config, &ring);
+        assert!(command.speed() > 0);
+        let observation = in_order(10_700 + pause, [5.0; 8]);
+        let view = Memory::default().update(&observation, [5.0, 0.0].into(), &ring, &config);
+        shield.assess(&view.expect("odometry"), &ring)
+    };
+    assert_eq!(stop_after(220), None);
+    let late = StopReason::LoopLate {
+        elapsed: 221,
+        bound: 220,
+    };
+    assert_eq!(stop_after(221), Some(late));
+}
+
+/// Somebody who is too fast is the robot's business where it could not drive at full speed for them.
+//= shield.INV-17
+#[test]
+fn who_is_too_fast_stops_when_near() {
+    let (config, ring) = pioneer_with::<8>();
+    let stop_at = |clearance: i32| {
+        let (mut shield, _) = under_way(0.1, &config, &ring);
+        let observation = in_order(10_800, [5.0; 8]);
+        let view = Memory::default().update(&observation, [5.0, 0.0].into(), &ring, &config);
+        let mut view = view.expect("odometry");
+        view.hazard[3] = Hazard {
+            clearance,
+            too_fast: true,
+            ..FAR
+        };
+        shield.assess(&view, &ring)
+    };
+    assert_eq!(stop_at(3000), None);
+    let exceeded = StopReason::ClassExceeded {
+        sonar: 3,
+        bound: 800,
+    };
+    assert_eq!(stop_at(600), Some(exceeded));
+}
+
+/// A stop for want of room tells how much is needed: to the millimetre, rounded up, what the law book
+/// has for a creep.
+//= shield.INV-3
+#[test]
+fn want_of_room_is_told() {
+    let (config, ring) = pioneer_with::<8>();
+    let stop_at = |clearance: i32| {
+        let observation = in_order(10_000, [5.0; 8]);
+        let view = Memory::default().update(&observation, [5.0, 0.0].into(), &ring, &config);
+        let mut view = view.expect("odometry");
+        view.hazard[3] = Hazard { clearance, ..FAR };
+        Shield::new(&config).assess(&view, &ring)
+    };
+    let told = stop_at(254);
+    assert!(
+        matches!(
+            told,
+            Some(StopReason::Clearance {
+                sonar: 3,
+                clearance: 254,
+                required: 255,
+                class: Class::Unknown,
+                ..
+            })
+        ),
+        "{told:?}"
+    );
+    assert_eq!(stop_at(255), Some(StopReason::Starting));
+}
+
 /// A robot that drives back, or is told to, comes no nearer to what is ahead; one that is told to drive
 /// forward does, although its wheels do not show it yet.
 //= shield.INV-8
@@ -907,20 +1003,7 @@ fn an_old_speed_may_have_grown() {
 fn only_driving_ahead_takes_time_to_contact() {
     let (config, ring) = pioneer_with::<16>();
     let closing_at = |advised: f32, measured: f32| {
-        let mut shield = Shield::new(&config);
-        let mut memory = Memory::default();
-        let mut command = Command::REST;
-        for tick in 0..8 {
-            let observation = in_order(10_000 + 100 * tick, [5.0; 16]);
-            let view = memory.update(&observation, [5.0, 0.0].into(), &ring, &config);
-            let view = view.expect("odometry");
-            shield.assess(&view, &ring);
-            let advice = Advice {
-                speed: advised,
-                turn_rate: 0.0,
-            };
-            command = shield.admit(advice, &view, &ring).command;
-        }
+        let (mut shield, command) = under_way(advised, &config, &ring);
         let mut view = approached(10_800, 0.2, &config, &ring);
         view.speed = measured;
         match shield.assess(&view, &ring) {
@@ -964,6 +1047,22 @@ fn what_limits_is_named() {
     assert_eq!(ask(3, -100, 400, 0), Some(Limit::Clearance { sonar: 3 }));
     assert_eq!(ask(3, -100, 0, 0), None);
     assert_eq!(ask(3, 20_000, 400, 1500), None);
+    // A robot that is faster than any plan knows is held by what the base can do.
+    let surroundings = Surroundings {
+        hazard: &[FAR; 8],
+        ring: &ring,
+        motion: Motion {
+            speed: 12_000,
+            ..Motion::REST
+        },
+        ahead: None,
+    };
+    let twist = Twist {
+        speed: 100,
+        turn_rate: 0,
+    };
+    let admission = guard.admissible(twist, twist, [100; 2], &surroundings);
+    assert_eq!(admission.limit, Some(Limit::Base));
 }
 
 /// A turn on the spot does not bring the robot nearer to anybody.
