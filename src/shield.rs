@@ -668,6 +668,7 @@ impl Shield {
     /// Judges a view: the reason to stand still in this tick, if there is one. A stop once begun
     /// lasts until nothing has demanded it, with the resume clearance on top, for
     /// `resume_samples` ticks in a row; a latched one until it is reset as well.
+    //= shield.INV-17
     pub fn assess<const N: usize>(&mut self, view: &View<N>, ring: &Ring<N>) -> Option<StopReason> {
         let margin = if self.stop.is_some() {
             self.guard.limits.resume_clearance
@@ -720,6 +721,7 @@ impl Shield {
 
     /// What demands a stop, the worst of it, with `margin` (mm) added to every distance needed.
     //= shield.INV-5
+    //= shield.INV-16
     fn demand<const N: usize>(
         &self,
         view: &View<N>,

@@ -30,14 +30,17 @@ enum Fate {
     Survived,
 }
 
-/// `kill MODULE [N]`: N mutants of the module, spread evenly, or all of them.
+/// `kill MODULE [N [SKIP]]`: N mutants of the module, spread evenly, or all of them; without those at the
+/// beginning that an earlier run has judged.
 pub fn run(module: &str, words: &[&str]) -> Outcome {
     let mutants = mutants(module)?;
     let wanted = words
         .first()
         .map_or(Ok(mutants.len()), |word| word.parse())?;
     let step = (mutants.len() / wanted.clamp(1, mutants.len().max(1))).max(1);
-    let chosen: Vec<&Value> = mutants.iter().step_by(step).take(wanted).collect();
+    let skipped = words.get(1).map_or(Ok(0), |word| word.parse())?;
+    let chosen = mutants.iter().step_by(step).take(wanted).skip(skipped);
+    let chosen: Vec<&Value> = chosen.collect();
     let harnesses = ledger::harnesses();
     let rounds = rounds(module, &harnesses);
     let copy = copy()?;
