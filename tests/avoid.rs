@@ -887,6 +887,131 @@ fn maneuver_first_turns_then_goes() {
     assert_relative_eq!(away.speed, config.speed_max, max_relative = 1e-5);
 }
 
+/// What stands beside the way to the goal is no obstacle; what moves there, or is out of sight, is.
+#[test]
+fn what_stands_beside_the_way_is_none() {
+    // Half a robot and its margin are 0.4 m.
+    let mode = |bearing: f32, trend: Trend, speed: f32, visible: bool| {
+        let mut view = sees(1.0, bearing);
+        let offset = nalgebra::Vector2::new(2.0, 1.0);
+        view.pose.position += offset;
+        if let Some(obstacle) = &mut view.obstacle {
+            obstacle.position += offset;
+            obstacle.trend = trend;
+            obstacle.speed.value = metres_per_second(speed);
+            obstacle.visible = visible;
+        }
+        let mut avoid = Avoid::new(s1());
+        avoid.advise(&view);
+        avoid.current()
+    };
+    for side in [-1.0, 1.0] {
+        assert_eq!(mode(0.38 * side, Trend::Closing, 0.1, true), Mode::Maneuver);
+        assert_eq!(mode(0.45 * side, Trend::Closing, 0.1, true), Mode::Cruise);
+        assert_eq!(mode(0.45 * side, Trend::Unknown, 0.4, true), Mode::Cruise);
+        assert_eq!(mode(0.45 * side, Trend::Closing, 0.4, true), Mode::Maneuver);
+        assert_eq!(
+            mode(0.45 * side, Trend::Closing, 0.1, false),
+            Mode::Maneuver
+        );
+    }
+}
+
+/// An echo that may be as far to the side as what stands right beside the robot is the same wall, and
+/// that is beside the way.
+#[test]
+fn a_wall_beside_the_robot_is_not_ahead() {
+    let mode = |bearing: f32, beside: [f32; 2]| {
+        let mut view = sees(1.0, bearing);
+        view.beside = beside.map(metres);
+        if let Some(obstacle) = &mut view.obstacle {
+            obstacle.speed.value = Speed::ZERO;
+        }
+        let mut avoid = Avoid::new(s1());
+        avoid.advise(&view);
+        avoid.current()
+    };
+    // At the edge of the cone, 15° farther out, it is 0.53 m to the side.
+    assert_eq!(mode(0.3, [0.55, 5.0]), Mode::Cruise);
+    assert_eq!(mode(-0.3, [5.0, 0.55]), Mode::Cruise);
+    assert_eq!(mode(0.3, [5.0, 0.55]), Mode::Maneuver);
+    assert_eq!(mode(-0.3, [0.55, 5.0]), Mode::Maneuver);
+    assert_eq!(mode(0.3, [0.65, 5.0]), Mode::Maneuver);
+    assert_eq!(mode(0.3, [0.42, 5.0]), Mode::Maneuver);
+}
+
+/// A maneuver is as fast as there is room ahead: not at all at d_n, and its own speed from d_safe on.
+#[test]
+fn a_maneuver_keeps_pace_with_the_room() {
+    let speed = |ahead: f32| {
+        let mut view = sees(0.6, 0.05);
+        view.pose.heading = radians(-FRAC_PI_2);
+        view.ahead = metres(ahead);
+        Avoid::new(s1()).advise(&view).speed
+    };
+    assert_eq!(speed(0.7), 0.0);
+    assert_eq!(speed(0.8), 0.0);
+    assert_relative_eq!(speed(1.0), s1().speed_max / 2.0, max_relative = 1e-4);
+    assert_relative_eq!(speed(1.2), s1().speed_max, max_relative = 1e-4);
+    assert_relative_eq!(speed(3.0), s1().speed_max, max_relative = 1e-4);
+}
+
+/// A maneuver that cannot go where it looks faces the goal after a while, and then looks to the other
+/// side.
+#[test]
+fn a_maneuver_without_room_looks_round() {
+    let mut avoid = Avoid::new(s1());
+    let mut turn_at = |now: u64, ahead: f32| {
+        let mut view = sees(1.0, 0.1);
+        view.now = Instant(now);
+        view.ahead = metres(ahead);
+        let advice = avoid.advise(&view);
+        assert_eq!(avoid.current(), Mode::Maneuver);
+        advice.turn_rate
+    };
+    assert!(turn_at(10_000, 0.7) < 0.0, "away, to the right");
+    assert!(turn_at(12_499, 0.7) < 0.0);
+    assert_eq!(turn_at(12_500, 0.7), 0.0, "the goal is straight ahead");
+    assert_eq!(turn_at(14_999, 0.7), 0.0);
+    assert!(turn_at(15_000, 0.7) > 0.0, "the other side");
+    // With room there is nothing to look for.
+    assert!(turn_at(17_499, 1.2) > 0.0);
+    assert!(turn_at(20_000, 0.7) > 0.0);
+    assert_eq!(turn_at(22_500, 0.7), 0.0);
+}
+
+/// Each mode is named on the status line and in the log.
+#[test]
+fn modes_have_names() {
+    let mut avoid = Avoid::new(s1());
+    let mut far = sees(1.0, 0.1);
+    far.obstacle = None;
+    let name = |avoid: &Avoid| Law::<3>::mode(avoid);
+    avoid.advise(&far);
+    assert_eq!(name(&avoid), "cruise");
+    avoid.advise(&sees(1.0, 0.1));
+    assert_eq!(name(&avoid), "maneuver");
+    far.pose.heading = radians(-0.8);
+    avoid.advise(&far);
+    assert_eq!(name(&avoid), "reorient");
+    far.guard = Some(StopReason::Operator);
+    avoid.advise(&far);
+    assert_eq!(name(&avoid), "stop");
+    far.goal.distance = 0.1;
+    avoid.advise(&far);
+    assert_eq!(name(&avoid), "arrived");
+}
+
+/// An orientation along the image is neither up nor down it.
+//= avoid.INV-14
+#[test]
+fn along_the_image_nothing_approaches() {
+    for (orientation, approaches) in [(0.0, false), (0.01, true), (3.14, true), (PI, false)] {
+        let found = avoid::image_direction(orientation).expect("an orientation");
+        assert_eq!(found.1, approaches, "{orientation}");
+    }
+}
+
 /// Presets are S1's and S2's tables.
 #[test]
 fn presets_are_the_tables() {
