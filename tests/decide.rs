@@ -732,6 +732,48 @@ fn what_is_close_ahead_is_stopped_for() {
     assert_eq!(advice.speed, AHEAD.speed, "{:?}", decide.verdict());
 }
 
+/// What is close and to the side of the way is stopped for as long as the robot's width would touch it.
+#[test]
+fn what_the_robot_would_touch_is_stopped_for() {
+    let (_, ring) = pioneer_with::<3>();
+    let response = |sonar: usize, range: f32| {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        for tick in 0..10 {
+            let mut view = looking_at(SonarReading::NoEcho(metres(5.0)), 100 * tick);
+            view.sonar[sonar] = SonarReading::Echo(metres(range + 0.001 * (tick % 2) as f32));
+            decide.advise(&view);
+        }
+        decide.verdict().response
+    };
+    for sonar in (0..3).filter(|sonar| *sonar != ahead()) {
+        let at = &ring.sonars()[sonar];
+        // Robot and margin reach 0.55 m to the side.
+        let aside = |range: f32| (at.position.y + at.axis.y * range).abs();
+        let near = 0.25;
+        assert!((0.1..0.5).contains(&aside(near)), "{}", aside(near));
+        assert_eq!(response(sonar, near), Response::Stop, "{}", aside(near));
+    }
+}
+
+/// A place that the robot has left far behind is forgotten: an echo from there is a first one again.
+#[test]
+fn what_is_far_behind_is_forgotten() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    let echo = SonarReading::Echo(metres(1.0));
+    let silent = SonarReading::NoEcho(metres(5.0));
+    let mut shown = |reading, t, x: f32| {
+        let mut view = looking_at(reading, t);
+        view.pose.position = Vector2::new(x, 0.0);
+        decide.advise(&view);
+        let law = decide.law().shown.expect("the law was asked");
+        law.obstacle.is_some()
+    };
+    assert!(!shown(echo, 100, 0.0));
+    assert!(!shown(silent, 200, -10.0));
+    assert!(!shown(echo, 300, 0.0), "forgotten");
+    assert!(shown(SonarReading::Echo(metres(1.001)), 400, 0.0));
+}
+
 /// A reading that stands is the same evidence until a sonar period has passed.
 #[test]
 fn a_reading_that_stands_counts_once() {
