@@ -4,7 +4,7 @@
 //! module's chapter are run on it, quick ones first, until one fails or reaches less than it should.
 //! What survives all of them is listed: a mistake that they would not notice.
 
-use super::ledger::{self, Harness, Reader};
+use super::ledger::{self, Harness, Reader, Verdict};
 use super::source::root;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
     let chosen = mutants.iter().step_by(step).take(wanted).skip(skipped);
     let chosen: Vec<&Value> = chosen.collect();
     let harnesses = ledger::harnesses();
-    let rounds = rounds(module, &harnesses);
+    let rounds = rounds(module, &harnesses)?;
     let copy = copy()?;
     eprintln!(
         "{} of {} mutants of `{module}`, {} harnesses",
@@ -111,20 +111,23 @@ fn mutants(module: &str) -> Outcome<Vec<Value>> {
 
 /// The chapter's own harnesses, those that take a few seconds first. What other chapters' proofs
 /// would notice as well is not asked, or each survivor would take the whole ledger.
-fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> [Vec<String>; 2] {
+fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> Outcome<[Vec<String>; 2]> {
     let (_, verdicts) = ledger::read_ledger(harnesses);
     let mut rounds = [const { Vec::new() }; 2];
-    for name in harnesses.keys() {
-        if !name.starts_with(&format!("{module}::")) {
-            continue;
-        }
-        let seconds = verdicts
-            .get(name)
-            .and_then(|verdict| verdict.seconds.parse::<f64>().ok());
-        let slow = seconds.is_none_or(|seconds| seconds > 10.0);
+    let own = format!("{module}::");
+    for (name, harness) in harnesses.iter().filter(|(name, _)| name.starts_with(&own)) {
+        // One that fails without a mistake would notice every one.
+        let sound =
+            |verdict: &&Verdict| verdict.is_good(harness) && verdict.digest == harness.digest;
+        let verdict = verdicts.get(name).filter(sound);
+        let verdict = verdict.ok_or_else(|| format!("{name} is not verified: prove it first"))?;
+        let slow = !verdict
+            .seconds
+            .parse()
+            .is_ok_and(|seconds: f64| seconds <= 10.0);
         rounds[usize::from(slow)].push(name.clone());
     }
-    rounds
+    Ok(rounds)
 }
 
 /// A copy of what is under version control, with a target folder of its own.
