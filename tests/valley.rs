@@ -72,6 +72,24 @@ fn accepted(geometry: &Geometry, scene: &Scene) -> Vec<bool> {
         .collect()
 }
 
+/// The angle of view is a cone about straight ahead, and far enough away it is as wide as a region has to
+/// be.
+#[test]
+fn the_view_is_a_cone() {
+    for half in [0.2_f32, 35_f32.to_radians(), 1.1] {
+        let geometry = Geometry::new(0.3, 0.2, half).expect("a geometry");
+        let wide = |forward: f32| forward * half.tan();
+        for forward in [0.5_f32, 1.0, 4.0] {
+            for side in [-1.0, 1.0] {
+                assert!(geometry.sees(forward, side * 0.99 * wide(forward)));
+                assert!(!geometry.sees(forward, side * 1.01 * wide(forward)));
+            }
+            assert!(!geometry.sees(-forward, 0.0));
+        }
+        assert_abs_diff_eq!(wide(geometry.least_range(0.25)), 1.05, epsilon = 1e-4);
+    }
+}
+
 proptest! {
     #![proptest_config(cases(4_000))]
 
