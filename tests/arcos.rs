@@ -856,3 +856,25 @@ fn real_sessions_are_read_in_full() {
     }
     println!("{refused} SIPs refused for claiming sonar readings that they do not hold");
 }
+
+/// What cannot be encoded is named, with the number and what is allowed.
+#[test]
+fn errors_name_what_was_wrong() {
+    let integer = EncodeError::Integer(70_000).to_string();
+    assert!(
+        integer.contains("70000 outside -65535..=65535"),
+        "{integer}"
+    );
+    let long = EncodeError::TooLong.to_string();
+    assert!(long.contains(&MAX_FRAME.to_string()), "{long}");
+}
+
+/// Beeps are a string of durations and tones.
+#[test]
+fn beeps_are_a_string() {
+    let beep = HostCommand::say(&[25, 60]);
+    assert_eq!(
+        (beep.number, beep.argument),
+        (15, Argument::Text(&[25, 60]))
+    );
+}

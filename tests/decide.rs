@@ -840,3 +840,24 @@ fn clocks_that_are_wrong() {
         assert!(advice.speed <= AHEAD.speed);
     }
 }
+
+/// What is no belief and no transition matrix says why, with the state and the value.
+#[test]
+fn errors_name_what_was_wrong() {
+    let negative = Belief::from_weights(&[0.5, -1.0])
+        .expect_err("negative")
+        .to_string();
+    assert!(negative.contains("state 1 is -1"), "{negative}");
+    let nothing = Belief::from_weights(&[0.0, 0.0])
+        .expect_err("nothing")
+        .to_string();
+    assert!(nothing.contains("all states are 0"), "{nothing}");
+    let entry = TransitionMatrix::new(&[[0.5, 0.5], [1.5, -0.5]])
+        .expect_err("entry")
+        .to_string();
+    assert!(entry.contains("from state 1 to 0 is 1.5"), "{entry}");
+    let row = TransitionMatrix::new(&[[0.5, 0.25], [0.5, 0.5]])
+        .expect_err("row")
+        .to_string();
+    assert!(row.contains("state 0 add up to 0.75"), "{row}");
+}

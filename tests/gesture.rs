@@ -537,3 +537,20 @@ fn bad_weights_and_settings_are_refused_by_name() {
         assert!(error.field.starts_with("gesture "), "{error}");
     }
 }
+
+/// What is no gesture says why.
+#[test]
+fn rejections_say_why() {
+    for (rejection, part) in [
+        (
+            Rejection::NotTracked("left hand"),
+            "left hand is not tracked",
+        ),
+        (Rejection::NotUnique(7), "number 7"),
+        (Rejection::Ambiguous, "between two"),
+        (Rejection::Unlike(Gesture::Forward), "forward"),
+    ] {
+        let message = rejection.to_string();
+        assert!(message.contains(part), "{message:?} does not say {part:?}");
+    }
+}

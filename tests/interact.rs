@@ -821,3 +821,11 @@ fn settings_leave_room() {
     assert_eq!(error.field, "stop_distance");
     assert!(error.min > 2.3, "{error}");
 }
+
+/// What is said to people is what S3 says.
+#[test]
+fn announcements_are_those_of_s3() {
+    assert_eq!(Announcement::RobotInPath.text(), "Robot in the path");
+    assert_eq!(Announcement::Interact.text(), "Interact");
+    assert_eq!(Announcement::NoFreePath.text(), "No free path");
+}

@@ -412,3 +412,52 @@ proptest! {
         }
     }
 }
+
+/// Every error and every missing value says what was wrong, with the numbers.
+#[test]
+fn errors_name_what_was_wrong() {
+    let said = [
+        (TelegramError::Start.to_string(), "begins"),
+        (
+            TelegramError::Length(813).to_string(),
+            "813 bytes, allowed is 1 to 812",
+        ),
+        (TelegramError::Truncated.to_string(), "truncated"),
+        (
+            TelegramError::Checksum {
+                computed: 0xABCD,
+                carried: 0x12,
+            }
+            .to_string(),
+            "checksum 0012, its bytes have ABCD",
+        ),
+        (ReplyError::NotFromScanner.to_string(), "host"),
+        (ReplyError::Command(0xB1).to_string(), "B1"),
+        (ReplyError::Size { bytes: 3 }.to_string(), "3 bytes"),
+        (
+            ReplyError::Unit(2).to_string(),
+            "unit 2, allowed is 0 (cm) or 1 (mm)",
+        ),
+        (ReplyError::Partial(1).to_string(), "part 1"),
+        (ReplyError::Count(7).to_string(), "7 values"),
+        (
+            ReplyError::Status(Status(0x43)).to_string(),
+            "Error, values implausible (status 43)",
+        ),
+        (
+            ReplyError::Status(Status(0x04)).to_string(),
+            "Fatal (status 04)",
+        ),
+        (Missing::NoEcho.to_string(), "no echo"),
+        (Missing::Dazzled.to_string(), "dazzled"),
+        (Missing::Overflow.to_string(), "overflow"),
+        (Missing::WeakEcho.to_string(), "weak"),
+        (Missing::ChannelError.to_string(), "channel"),
+        (Missing::TooFar.to_string(), "far"),
+        (Missing::Reserved.to_string(), "reserved"),
+    ];
+    for (message, part) in said {
+        assert!(message.contains(part), "{message:?} does not say {part:?}");
+    }
+    assert!(Status(0x80).is_polluted() && !Status(0x7F).is_polluted());
+}
