@@ -916,6 +916,27 @@ fn what_only_a_sonar_hears_counts() {
 
 // ------------------------------------------------------------------------------------- the law
 
+/// A point of an edge's frame, taken to the world and back, is itself; along the edge is along it, and
+/// left is left.
+#[test]
+fn frames_of_an_edge_agree() {
+    let same = |one: Vector2<f32>, other: Vector2<f32>| (one - other).amax() < 1e-5;
+    let along = edge([1.0, 2.0], [1.0, 5.0]);
+    for (on, world) in [
+        ([0.0, 0.0], [1.0, 2.0]),
+        ([2.0, 0.0], [1.0, 4.0]),
+        ([2.0, 0.5], [0.5, 4.0]),
+    ] {
+        let [on, world] = [on, world].map(|[x, y]: [f32; 2]| point(x, y));
+        assert!(same(along.to_world(on), world));
+        assert!(same(along.to_edge(world), on));
+    }
+    let slanted = edge([-1.0, 0.5], [2.0, 4.5]);
+    let on = point(1.25, -0.75);
+    assert!(same(slanted.to_edge(slanted.to_world(on)), on));
+    assert!(same(slanted.to_world(point(5.0, 0.0)), point(2.0, 4.5)));
+}
+
 /// Detection, stop, scan, way round, and back; and a way that is too narrow.
 #[test]
 fn law_goes_through_its_states() {
@@ -928,17 +949,20 @@ fn law_goes_through_its_states() {
         view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
         assert!(driver.advise(&view).speed > 0.0);
         assert_eq!(driver.state(), State::FollowEdge);
+        assert_eq!(Law::<8>::mode(&driver), "follow edge");
         view.sonar[4] = echo(0.35);
         view.speed = 0.2;
         view.now = Instant(100);
         assert_eq!(driver.advise(&view).speed, 0.0);
         assert_eq!(driver.state(), State::Stopped);
+        assert_eq!(Law::<8>::mode(&driver), "stopped");
         assert!(matches!(driver.next_event(), Some(Event::Detected(0, _))));
         assert!(!driver.wants_scan());
         view.speed = 0.0;
         view.now = Instant(600);
         driver.advise(&view);
         assert_eq!(driver.state(), State::Measure);
+        assert_eq!(Law::<8>::mode(&driver), "measure");
         let ranges = corridor_scan(free, 0.5_f64.to_radians());
         let placement = Placement {
             x: 0.0,
@@ -959,9 +983,15 @@ fn law_goes_through_its_states() {
         view.now = Instant(700);
         driver.advise(&view);
         assert_eq!(driver.state(), State::FreeWay);
+        assert_eq!(Law::<8>::mode(&driver), "free way");
         view.now = Instant(800);
         driver.advise(&view);
         assert_eq!(driver.state(), ends);
+        let name = match ends {
+            State::SubRoute => "sub-route",
+            _ => "blocked",
+        };
+        assert_eq!(Law::<8>::mode(&driver), name);
         if ends == State::Blocked {
             assert_eq!(driver.next_event(), Some(Event::Blocked(0)));
             driver
