@@ -980,6 +980,82 @@ fn a_maneuver_without_room_looks_round() {
     assert_eq!(turn_at(22_500, 0.7), 0.0);
 }
 
+/// The robot cruises again once it looks at the goal and nothing is inside d_safe, and no sooner; only
+/// standing is rest.
+#[test]
+fn aligned_it_cruises() {
+    let config = s1();
+    let next = |mode, distance: Option<f32>, aligned| {
+        let distance = distance.map(metres);
+        let situation = Situation {
+            distance,
+            aligned,
+            ..at(1.0, Trend::Steady)
+        };
+        avoid::next_mode(mode, &situation, &config)
+    };
+    for mode in [Mode::Maneuver, Mode::Reorient, Mode::Stop] {
+        assert_eq!(next(mode, None, true), Mode::Cruise);
+        assert_eq!(next(mode, None, false), Mode::Reorient);
+    }
+    assert_eq!(next(Mode::Cruise, None, false), Mode::Cruise);
+    assert_eq!(next(Mode::Reorient, Some(1.3), true), Mode::Cruise);
+    assert_eq!(next(Mode::Reorient, Some(1.3), false), Mode::Reorient);
+    assert_eq!(next(Mode::Reorient, Some(1.1), true), Mode::Reorient);
+    for mode in [Mode::Cruise, Mode::Maneuver, Mode::Reorient] {
+        assert!(!mode.at_rest());
+    }
+    assert!(Mode::Stop.at_rest() && Mode::Arrived.at_rest());
+}
+
+/// Where nothing is seen any more the robot goes at half its cruise speed until it looks at the goal; with
+/// something in sight, far away, at all of it.
+#[test]
+fn reorients_with_care() {
+    let config = s1();
+    let speed = |seen: bool| {
+        let mut avoid = Avoid::new(config);
+        avoid.advise(&sees(1.0, 0.1));
+        let mut view = sees(3.0, 0.0);
+        if !seen {
+            view.obstacle = None;
+        }
+        // Off by little more than it takes to be aligned.
+        view.pose.heading = radians(-0.11);
+        let advice = avoid.advise(&view);
+        assert_eq!(avoid.current(), Mode::Reorient);
+        advice.speed
+    };
+    let turning = 1.0 - 0.11 / FRAC_PI_2;
+    assert_relative_eq!(
+        speed(true),
+        config.cruise_speed * turning,
+        max_relative = 1e-4
+    );
+    assert_relative_eq!(
+        speed(false),
+        config.cruise_speed * turning / 2.0,
+        max_relative = 1e-4
+    );
+}
+
+/// A robot that stands does not choose a side before it knows how the thing moves; then it does.
+#[test]
+fn a_side_is_chosen_with_a_trend() {
+    let mut avoid = Avoid::new(s1());
+    let mut view = sees(1.0, 0.1);
+    view.guard = Some(StopReason::Operator);
+    if let Some(obstacle) = &mut view.obstacle {
+        obstacle.trend = Trend::Unknown;
+    }
+    assert_eq!(avoid.advise(&view).turn_rate, 0.0);
+    assert_eq!(avoid.current(), Mode::Stop);
+    if let Some(obstacle) = &mut view.obstacle {
+        obstacle.trend = Trend::Closing;
+    }
+    assert!(avoid.advise(&view).turn_rate < 0.0, "away, to the right");
+}
+
 /// Each mode is named on the status line and in the log.
 #[test]
 fn modes_have_names() {
