@@ -819,6 +819,42 @@ fn a_camera_confirms() {
     }
 }
 
+/// An echo from farther off than the thing can have come in the meantime is another thing's first.
+#[test]
+fn a_leap_is_another_thing() {
+    let shown = |second: f32| {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        for (tick, range) in [(0, 1.0), (1, second)] {
+            let echo = SonarReading::Echo(metres(range));
+            decide.advise(&looking_at(echo, 1_000 + 100 * tick));
+        }
+        let law = decide.law().shown.expect("the law was asked");
+        law.obstacle.is_some()
+    };
+    // 0.15 m of scatter and 0.08 m at 0.8 m/s.
+    assert!(shown(0.8));
+    assert!(!shown(0.75));
+    assert!(!shown(0.5));
+}
+
+/// A camera that sees nobody where an echo came from makes it less probable.
+#[test]
+fn a_camera_refutes() {
+    let doubted = |look: bool| {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        decide.advise(&looking_at(SonarReading::Echo(metres(1.0)), 1_000));
+        if look {
+            decide.see(CameraLook {
+                detected: None,
+                taken_at: Instant(1_000),
+            });
+        }
+        decide.advise(&looking_at(SonarReading::Echo(metres(1.0)), 1_020));
+        decide.verdict().doubted.expect("a first echo")
+    };
+    assert!(doubted(true) < doubted(false) / 2.0);
+}
+
 /// More places than are kept in mind: the nearest are, and what is not is taken as it is.
 #[test]
 fn many_places() {
