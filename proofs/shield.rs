@@ -831,12 +831,8 @@ pub fn any_law_is_shielded() {
         command.speed(),
         command.turn_rate(),
     ));
-    let trusted = matches!(
-        view.sonar[0],
-        SonarReading::Echo(_) | SonarReading::NoEcho(_)
-    ) && view.base.motors_enabled
-        && !view.base.stalled
-        && !view.base.emergency_stop;
+    let signs = signs(&view, 400, 0, false);
+    let trusted = !signs.base && !signs.untrusted;
     if !trusted {
         assert!(verdict.stop.is_some());
         assert!(promise::untrusted_rests(
@@ -888,6 +884,15 @@ fn signs(view: &View<1>, least: i32, elapsed: i64, moving: bool) -> promise::Sig
     }
 }
 
+/// Whether a view stops the robot: for any sign that demands it and, where there is room, for nothing else.
+fn stopped_by(signs: &promise::Signs, shield: &mut Shield, view: &View<1>) -> Option<StopReason> {
+    let ring = super::view::one_sonar(&super::view::BLIND_PIONEER);
+    let stop = shield.assess(view, &ring);
+    assert!(promise::every_cause_stops(signs, stop.is_some()));
+    assert!(promise::nothing_else_stops(signs, ROOM, stop.is_some()));
+    stop
+}
+
 /// A robot that was told to drive, turn or rest is stopped by any sign that demands it, and, where there
 /// is room, by no other view; what is to be latched is latched at once.
 //= shield.INV-16
@@ -921,9 +926,7 @@ pub fn every_cause_stops() {
     view.now = Instant(clear.now.0.saturating_add_signed(elapsed.into()));
     let elapsed = view.now.0 as i64 - clear.now.0 as i64;
     let signs = signs(&view, 400, elapsed, moving);
-    let stop = shield.assess(&view, &ring);
-    assert!(promise::every_cause_stops(&signs, stop.is_some()));
-    assert!(promise::nothing_else_stops(&signs, ROOM, stop.is_some()));
+    let stop = stopped_by(&signs, &mut shield, &view);
     let latches = stop.is_some_and(|stop| stop.action() == Action::LatchedStop);
     assert!(shield.is_latched() == latches);
     kani::cover!(stop.is_none() && moving, "it goes on");
@@ -947,14 +950,10 @@ pub fn every_cause_stops() {
 )]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
 pub fn a_stop_ends() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = Shield::new(&config);
+    let mut shield = Shield::new(&super::view::BLIND_PIONEER);
     let view = super::view::any_view();
     let signs = signs(&view, 450, 0, false);
-    let stop = shield.assess(&view, &ring);
-    assert!(promise::every_cause_stops(&signs, stop.is_some()));
-    assert!(promise::nothing_else_stops(&signs, ROOM, stop.is_some()));
+    let stop = stopped_by(&signs, &mut shield, &view);
     kani::cover!(stop.is_none(), "free");
     kani::cover!(
         matches!(stop, Some(StopReason::MinDistance { range: 450, .. })),

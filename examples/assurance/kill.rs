@@ -4,7 +4,7 @@
 //! module's chapter are run on it, quick ones first, until one fails or reaches less than it should.
 //! What survives all of them is listed: a mistake that they would not notice.
 
-use super::ledger::{self, Harness, Reader, Verdict};
+use super::ledger::{self, Harness, Reader};
 use super::source::root;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
     );
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     // What noticed one mistake is likely to notice the next, which is in the same function.
-    let mut first: Vec<String> = Vec::new();
+    let mut first: Option<String> = None;
     println!(
         "## Mutants of `{module}`, judged by proofs alone\n\n| mutant | noticed by |\n|---|---|"
     );
@@ -62,7 +62,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         let file = mutant["file"].as_str().ok_or("a mutant without a file")?;
         let original = std::fs::read_to_string(root().join(file))?;
         std::fs::write(copy.join(file), mutated(&original, mutant)?)?;
-        let fate = judge(&copy, &first, &rounds, &harnesses)?;
+        let fate = judge(&copy, first.as_ref(), &rounds, &harnesses)?;
         std::fs::write(copy.join(file), &original)?;
         let (kind, shown) = match &fate {
             Fate::Noticed(by) => ("noticed", by.clone()),
@@ -72,7 +72,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         };
         *counts.entry(kind).or_default() += 1;
         if let Fate::Noticed(by) = fate {
-            first = vec![by];
+            first = Some(by);
         }
         println!("| {} | {shown} |", name.replace('|', "\\|"));
         eprintln!(
@@ -117,9 +117,7 @@ fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> Outcome<[Vec<S
     let own = format!("{module}::");
     for (name, harness) in harnesses.iter().filter(|(name, _)| name.starts_with(&own)) {
         // One that fails without a mistake would notice every one.
-        let sound =
-            |verdict: &&Verdict| verdict.is_good(harness) && verdict.digest == harness.digest;
-        let verdict = verdicts.get(name).filter(sound);
+        let verdict = verdicts.get(name).filter(|verdict| verdict.holds(harness));
         let verdict = verdict.ok_or_else(|| format!("{name} is not verified: prove it first"))?;
         let slow = !verdict
             .seconds
@@ -180,19 +178,18 @@ fn mutated(text: &str, mutant: &Value) -> Outcome<String> {
     Ok(format!("{}{replacement}{}", &text[..begin], &text[end..]))
 }
 
-/// Runs those harnesses first, then round after round on the copy until something is not as it should be.
+/// Runs that harness first, then round after round on the copy until something is not as it should be.
 fn judge(
     copy: &Path,
-    first: &[String],
+    first: Option<&String>,
     rounds: &[Vec<String>],
     harnesses: &BTreeMap<String, Harness>,
 ) -> Outcome<Fate> {
-    let all = std::iter::once(first).chain(rounds.iter().map(Vec::as_slice));
-    for (number, round) in all.enumerate() {
-        let round: Vec<&String> = round
-            .iter()
-            .filter(|name| number == 0 || !first.contains(name))
-            .collect();
+    let others = rounds.iter().map(|round| {
+        let others = round.iter().filter(|name| Some(*name) != first);
+        others.collect::<Vec<_>>()
+    });
+    for round in std::iter::once(first.into_iter().collect()).chain(others) {
         if round.is_empty() {
             continue;
         }

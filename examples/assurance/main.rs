@@ -102,9 +102,9 @@ fn prove(words: &[&str]) -> Outcome {
     let chosen: Vec<&String> = harnesses
         .iter()
         .filter(|(name, harness)| {
-            let stale = verdicts.get(*name).is_none_or(|verdict| {
-                verdict.digest != harness.digest || !verdict.is_good(harness)
-            });
+            let stale = verdicts
+                .get(*name)
+                .is_none_or(|verdict| !verdict.holds(harness));
             let named = names.iter().any(|begin| name.starts_with(begin));
             if names.is_empty() {
                 all || stale

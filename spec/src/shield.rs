@@ -70,15 +70,17 @@ pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_tim
     2000 * b * x >= 2 * b * w * e + 1000 * w * w && b * t >= b * e + 1000 * w
 }
 
-/// What f32 products of lengths up to 20 m and speeds up to 20 m/s round, in thousandths.
-const ROUNDED: f64 = 1.0 / 256.0;
+/// The f32 products that convert limits are themselves rounded, by one part in ten million each.
+const ROUNDED: f64 = 2e-7;
 
 /// shield.INV-2: a whole number of thousandths is no more than what is configured, and less by no
 /// more than a whole one.
 #[must_use]
 pub fn rounded_down(thousandths: i32, configured: f64) -> bool {
-    let short = 1000.0 * configured - f64::from(thousandths);
-    (-ROUNDED..1.0 + ROUNDED).contains(&short)
+    let (whole, exact) = (f64::from(thousandths), 1000.0 * configured);
+    let slack = ROUNDED * exact.abs();
+    // Sums that nothing small gets lost in: a speed of next to nothing is a whole one, rounded up.
+    whole <= exact + slack && exact - slack < whole + 1.0
 }
 
 /// shield.INV-2: a whole number of thousandths is no less than what is configured, and more by no
