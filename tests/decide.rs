@@ -8,8 +8,8 @@ use proptest::prelude::*;
 use sidestep::avoid::Avoid;
 use sidestep::config::{self, Config};
 use sidestep::decide::{
-    self, BadLoss, BadSettings, Belief, CameraLook, Decide, DistanceLoss, Dominated, Hearing,
-    LossTable, NoBelief, NotStochastic, ONE, Parameters, Response, SecondLook, Settings,
+    self, BadLoss, BadSettings, Belief, CameraLook, CameraModel, Decide, DistanceLoss, Dominated,
+    Hearing, LossTable, NoBelief, NotStochastic, ONE, Parameters, Response, SecondLook, Settings,
     SonarModel, TransitionMatrix,
 };
 use sidestep::failsafe::StopReason;
@@ -447,6 +447,9 @@ fn settings_are_checked() {
             by: 1
         })))
     ));
+    // As good in one state and better in another is enough.
+    let table = LossTable::with_dominated(&[[1.0, 2.0], [1.0, 1.0]]).expect("losses");
+    assert_eq!(table.dominated(), Some(Dominated { action: 0, by: 1 }));
     let same = |far: f32, near: f32| {
         let table = LossTable::TABLE_2;
         DistanceLoss::with_dominated(table, metres(far), table, metres(near))
@@ -470,6 +473,25 @@ fn sonars_hear_as_modelled() {
     assert_eq!(sonar.likelihood(Hearing::Past, 0.2), [0.2, 0.9]);
     for hearing in [Hearing::Beside, Hearing::Nothing] {
         assert_eq!(sonar.likelihood(hearing, 0.2), [1.0, 1.0]);
+    }
+    let camera = CameraModel {
+        detection: 0.75,
+        false_alarm: 0.125,
+    };
+    assert_eq!(camera.likelihood(true), [0.75, 0.125]);
+    assert_eq!(camera.likelihood(false), [0.25, 0.875]);
+}
+
+/// What rounding loses goes to the most probable state, wherever that is.
+#[test]
+fn roundings_go_to_the_most_probable() {
+    for greatest in 0..3 {
+        let mut weights = [1.0; 3];
+        weights[greatest] = 5.0;
+        let belief = Belief::from_weights(&weights).expect("weights");
+        for (state, part) in belief.parts().iter().enumerate() {
+            assert_eq!(state != greatest, *part == ONE / 7, "{belief:?}");
+        }
     }
 }
 
@@ -656,6 +678,10 @@ fn what_appears_is_looked_at_again() {
     assert_eq!(times(&[4.0, 1.0, 0.95]), [100, 100, 300]);
     assert_eq!(times(&[4.0, 1.0, 2.0, 0.9]), [100, 100, 100, 400]);
     assert_eq!(times(&[1.0, 0.9, 5.0, 0.7, 0.6]), [100, 200, 300, 400, 500]);
+    // What was taken no later than what was handed on is not new, and is not judged.
+    let mut look = SecondLook::default();
+    assert_eq!(handed_on(&mut look, 4.0, 100, &config), (4.0, 100));
+    assert_eq!(handed_on(&mut look, 1.0, 100, &config), (1.0, 100));
     let once = common::pioneer();
     assert_eq!(through(&[4.0, 1.0], &once), [(4.0, 100), (1.0, 200)]);
 }
@@ -799,7 +825,10 @@ fn a_camera_confirms() {
     let at = ring.sonars()[ahead()].heading.get();
     for (detected, taken_at, believed) in [
         (bearing(at), 900, true),
-        (bearing(at), 400, false),
+        (bearing(at + 0.25), 900, true),
+        (bearing(at + 0.27), 900, false),
+        (bearing(at), 500, true),
+        (bearing(at), 499, false),
         (bearing(at + 1.0), 900, false),
         (None, 900, false),
     ] {
@@ -853,6 +882,285 @@ fn a_camera_refutes() {
         decide.verdict().doubted.expect("a first echo")
     };
     assert!(doubted(true) < doubted(false) / 2.0);
+}
+
+// ------------------------------------------------------- places, and what is believed of them
+
+/// One tick: what one sonar alone says, with the robot turned by `heading` and `x` metres on.
+fn verdict_on(
+    decide: &mut Decide<Told<3>, 3>,
+    reading: SonarReading,
+    (heading, x): (f32, f32),
+    t: u64,
+) -> decide::Verdict {
+    let mut view = looking_at(reading, t);
+    view.sonar = [SonarReading::Stale; 3];
+    view.sonar[ahead()] = reading;
+    view.pose.heading = Angle::radians(heading).expect("an angle");
+    view.pose.position = Vector2::new(x, 0.0);
+    decide.advise(&view);
+    *decide.verdict()
+}
+
+fn echo(range: f32) -> SonarReading {
+    SonarReading::Echo(metres(range))
+}
+
+/// With sonars that are often wrong, so that a second echo is doubted as the first is, and says by the
+/// probability which place it was taken to come from: 0.03 for a new one, some 0.14 for one heard before.
+fn doubting() -> Decide<Told<3>, 3> {
+    let (config, ring) = pioneer_with::<3>();
+    let parameters = Parameters {
+        sonar: SonarModel {
+            miss: 0.5,
+            false_echo: 0.5,
+            false_range: 2.5,
+        },
+        newcomer: 0.03,
+        ..Parameters::USUAL
+    };
+    let settings = Settings::new(parameters, &config).expect("in range");
+    let told = Told {
+        advice: AHEAD,
+        shown: None,
+    };
+    Decide::new(told, config, ring, settings)
+}
+
+const NEW: std::ops::Range<f32> = 0.029..0.031;
+const AGAIN: std::ops::Range<f32> = 0.08..0.2;
+
+/// Plays echoes (heading, range) every 40 ms, which is too soon for a belief to fade, and returns what is
+/// doubted in each tick.
+fn doubts(decide: &mut Decide<Told<3>, 3>, echoes: &[(f32, f32)]) -> Vec<Option<f32>> {
+    let mut t = 0;
+    let mut tick = |(heading, range): &(f32, f32)| {
+        t += 40;
+        verdict_on(decide, echo(*range), (*heading, 0.0), t).doubted
+    };
+    echoes.iter().map(&mut tick).collect()
+}
+
+fn is(doubt: Option<f32>, of: &std::ops::Range<f32>) -> bool {
+    doubt.is_some_and(|doubt| of.contains(&doubt))
+}
+
+proptest! {
+    #![proptest_config(common::cases(500))]
+
+    /// The belief in one place is that of the filter, in `f64`: prediction by sonar periods, the likelihood
+    /// of an echo from there, of one from behind, and of a camera's look, and the floor.
+    //= decide.INV-4
+    #[test]
+    fn the_belief_in_a_place_is_the_filters(
+        steps in prop::collection::vec(
+            (prop_oneof![6 => 100_u64..400, 1 => 400_u64..6_000], 0..4_u8, -0.1_f32..0.1, 0..6_u8),
+            1..30,
+        ),
+    ) {
+        let (mut decide, config) = deciding::<3>(AHEAD);
+        let Parameters { sonar, camera, newcomer, appear, vanish, floor, .. } = Parameters::USUAL;
+        let [appear, vanish, floor] = [appear, vanish, floor].map(f64::from);
+        let transition = [vec![1.0 - vanish, vanish], vec![appear, 1.0 - appear]];
+        let observed = |belief: f64, likelihood: [f32; 2]| {
+            let posterior = law::e21(&likelihood.map(f64::from), &[belief, 1.0 - belief]);
+            posterior.expect("evidence")[0] * (1.0 - 2.0 * floor) + floor
+        };
+        // Its probability, range, and when it was heard.
+        let mut place: Option<(f64, f32, u64)> = None;
+        let mut now = 0;
+        for (gap, kind, off, look) in steps {
+            now += gap;
+            let range = place.map_or(1.0, |(_, range, _)| (range + off).clamp(0.8, 1.2));
+            let heard = kind < 2;
+            // Otherwise the sonar hears nothing, or the wall behind.
+            let reading = match kind {
+                0 | 1 => echo(range),
+                2 => SonarReading::NoEcho(metres(5.0)),
+                _ => echo(3.0 + off),
+            };
+            if let Some((belief, before, at)) = &mut place {
+                for _ in 0..(gap + 50) / 100 {
+                    *belief = law::e16(&[*belief, 1.0 - *belief], &transition)[0];
+                }
+                let age = (now - *at).min(1_000) as f32 / 1_000.0;
+                let gate = (0.15 + config.obstacle_speed_max * age).min(0.4);
+                let hearing = if heard { Hearing::There } else { Hearing::Past };
+                *belief = observed(*belief, sonar.likelihood(hearing, gate));
+                if heard {
+                    (*before, *at) = (range, now);
+                }
+            } else if heard {
+                place = Some((newcomer.into(), range, now));
+            }
+            if look < 2 {
+                let detected = (look == 0).then_some(Angle::ZERO);
+                decide.see(CameraLook { detected, taken_at: Instant(now) });
+                if let Some((belief, ..)) = &mut place {
+                    *belief = observed(*belief, camera.likelihood(look == 0));
+                }
+            }
+            let verdict = verdict_on(&mut decide, reading, (0.0, 0.0), now);
+            let shown = verdict.doubted.or(verdict.probability);
+            prop_assert!(shown.is_some() || !heard, "{verdict:?}");
+            if let (Some(shown), Some((belief, ..))) = (shown, place) {
+                prop_assert!((f64::from(shown) - belief).abs() < 1e-5, "{shown} for {belief}");
+            }
+            place = place.filter(|(belief, ..)| *belief >= 0.02);
+        }
+    }
+}
+
+/// What a sonar hears beside a place that its cone does not cover is of the same thing, as probable as
+/// before; farther beside it is another.
+#[test]
+fn what_is_heard_beside_a_place_is_the_same() {
+    let turned = |heading| {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        verdict_on(&mut decide, echo(1.0), (0.0, 0.0), 100);
+        let there = verdict_on(&mut decide, echo(1.01), (0.0, 0.0), 140);
+        let beside = verdict_on(&mut decide, echo(1.0), (heading, 0.0), 180);
+        (there, beside)
+    };
+    let (there, beside) = turned(0.3);
+    assert_eq!(beside.doubted, None);
+    let kept = beside.probability.zip(there.probability);
+    // But for the floor, which is applied again.
+    assert!(
+        kept.is_some_and(|(now, before)| (now - before).abs() < 2e-3),
+        "{kept:?}"
+    );
+    let (_, another) = turned(0.5);
+    assert!(another.doubted.is_some(), "{another:?}");
+}
+
+/// An echo is that of the place which its cone covers, though another beside it is as far off as the echo.
+#[test]
+fn covered_places_come_first() {
+    for (first, second) in [((0.0, 1.1), (0.45, 1.0)), ((0.45, 1.0), (0.0, 1.1))] {
+        let doubt = doubts(&mut doubting(), &[first, second, (0.17, 1.005)]);
+        assert!(is(doubt[0], &NEW) && is(doubt[1], &NEW), "{doubt:?}");
+        assert!(is(doubt[2], &AGAIN), "{doubt:?}");
+    }
+}
+
+/// Two places that have come together are one: the more probable. Those that are apart stay two, however
+/// probable the other is.
+#[test]
+fn places_that_meet_are_one() {
+    let meeting = [1.09, 1.17, 1.26].map(|range| (0.0, range));
+    for two in [[1.3, 1.0], [1.0, 1.3]] {
+        let mut decide = doubting();
+        let doubt = doubts(
+            &mut decide,
+            &[two.map(|range| (0.0, range)).as_slice(), &meeting].concat(),
+        );
+        assert!(is(doubt[0], &NEW) && is(doubt[1], &NEW), "{doubt:?}");
+        assert!(is(doubt[2], &AGAIN), "{doubt:?}");
+        // The fourth echo from the nearer one.
+        assert_eq!(doubt[4], None);
+        let verdict = decide.verdict();
+        assert!(verdict.probability.is_some_and(|p| p > 0.7), "{verdict:?}");
+    }
+    for apart in [[(0.0, 1.0), (0.6, 1.02)], [(0.6, 1.0), (0.0, 1.02)]] {
+        let [often, once] = apart;
+        let again = |(heading, range): (f32, f32)| (heading, range + 0.01);
+        let doubt = doubts(&mut doubting(), &[often, once, again(often), again(once)]);
+        assert!(is(doubt[2], &AGAIN) && is(doubt[3], &AGAIN), "{doubt:?}");
+    }
+}
+
+/// A place is forgotten once the robot is too far away from it to come near it soon, not before.
+#[test]
+fn only_what_is_far_away_is_forgotten() {
+    let (config, ring) = pioneer_with::<3>();
+    let farthest = config.safe_distance + config.robot_radius + 0.8;
+    let at = &ring.sonars()[ahead()];
+    let place = at.position + at.axis;
+    // So far back that the place is `away` metres from the robot.
+    let back = |away: f32| place.x - (away * away - place.y * place.y).sqrt();
+    for (away, expected) in [(farthest - 0.02, AGAIN), (farthest + 0.02, NEW)] {
+        let mut decide = doubting();
+        verdict_on(&mut decide, echo(1.0), (0.0, 0.0), 40);
+        let silent = SonarReading::NoEcho(metres(0.5));
+        verdict_on(&mut decide, silent, (0.0, back(away)), 80);
+        let verdict = verdict_on(&mut decide, echo(1.0), (0.0, 0.0), 120);
+        assert!(is(verdict.doubted, &expected), "{away}: {verdict:?}");
+    }
+}
+
+/// Of more places than are kept in mind, sixteen, the farthest gives way to a nearer one, and is taken as
+/// it is from then on: never doubted.
+#[test]
+fn the_nearest_places_are_kept() {
+    let turned = |k: u8| 0.36 * f32::from(k);
+    for farthest in [0, 5, 15] {
+        let mut echoes: Vec<(f32, f32)> = (0..16)
+            .map(|k| {
+                (
+                    turned(k),
+                    if k == farthest {
+                        1.6
+                    } else {
+                        1.5 - 0.001 * f32::from(k)
+                    },
+                )
+            })
+            .collect();
+        let far = echoes[usize::from(farthest)];
+        // The seventeenth, the farthest again, and one that was kept.
+        let kept = echoes[8];
+        echoes.extend([(turned(16), 1.2), (far.0, 1.61), (kept.0, kept.1 + 0.01)]);
+        let doubt = doubts(&mut doubting(), &echoes);
+        assert!(
+            doubt[..17].iter().all(|doubt| is(*doubt, &NEW)),
+            "{doubt:?}"
+        );
+        assert_eq!(doubt[17], None, "{farthest}");
+        assert!(is(doubt[18], &AGAIN), "{doubt:?}");
+    }
+}
+
+/// A camera that sees nobody says so of what is in its field of view only.
+#[test]
+fn a_camera_looks_only_ahead() {
+    let doubted = |look: bool, heading: f32| {
+        let mut decide = doubting();
+        verdict_on(&mut decide, echo(1.0), (0.0, 0.0), 40);
+        if look {
+            decide.see(CameraLook {
+                detected: None,
+                taken_at: Instant(80),
+            });
+        }
+        let silent = SonarReading::NoEcho(metres(0.5));
+        verdict_on(&mut decide, silent, (heading, 0.0), 80);
+        verdict_on(&mut decide, echo(1.01), (0.0, 0.0), 120).doubted
+    };
+    let half = common::pioneer().view_half_angle;
+    let at = pioneer_with::<3>().1.sonars()[ahead()].heading.get();
+    assert_eq!(
+        doubted(true, at - half - 0.1),
+        doubted(false, at - half - 0.1)
+    );
+    assert_eq!(
+        doubted(true, at + half + 0.1),
+        doubted(false, at + half + 0.1)
+    );
+    assert!(doubted(true, at - half + 0.1) != doubted(false, at - half + 0.1));
+}
+
+/// Evidence lasts for one control period, to the millisecond.
+#[test]
+fn evidence_lasts_for_a_control_period() {
+    for (silent, blind) in [(220, false), (221, true)] {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        verdict_on(&mut decide, echo(1.0), (0.0, 0.0), 1_000);
+        let mut stale = looking_at(SonarReading::Stale, 1_000 + silent);
+        stale.sonar = [SonarReading::Stale; 3];
+        decide.advise(&stale);
+        assert_eq!(decide.verdict().blind, blind, "after {silent} ms");
+    }
 }
 
 /// More places than are kept in mind: the nearest are, and what is not is taken as it is.

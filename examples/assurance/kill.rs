@@ -7,7 +7,7 @@
 use super::ledger::{self, Harness, Reader};
 use super::source::root;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead as _, BufReader};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
@@ -30,20 +30,25 @@ enum Fate {
     Survived,
 }
 
-/// `kill MODULE [N [SKIP]]`: N mutants of the module, spread evenly, or all of them; without those at the
-/// beginning that an earlier run has judged.
+/// `kill MODULE [PATTERN] [N [SKIP]]`: N mutants of the module or all of them, only those whose names have
+/// the pattern, without as many at the beginning as an earlier run has judged. However many, they are
+/// spread evenly.
 pub fn run(module: &str, words: &[&str]) -> Outcome {
-    let mutants = mutants(module)?;
-    let wanted = words
+    let (pattern, numbers) = match words {
+        [pattern, numbers @ ..] if pattern.parse::<usize>().is_err() => (*pattern, numbers),
+        _ => ("", words),
+    };
+    let mutants = mutants(module, pattern)?;
+    let wanted = numbers
         .first()
         .map_or(Ok(mutants.len()), |word| word.parse())?;
-    let step = (mutants.len() / wanted.clamp(1, mutants.len().max(1))).max(1);
-    let skipped = words.get(1).map_or(Ok(0), |word| word.parse())?;
-    let chosen = mutants.iter().step_by(step).take(wanted).skip(skipped);
+    let skipped = numbers.get(1).map_or(Ok(0), |word| word.parse())?;
+    let chosen = spread(&mutants).into_iter().take(wanted).skip(skipped);
     let chosen: Vec<&Value> = chosen.collect();
     let harnesses = ledger::harnesses();
     let rounds = rounds(module, &harnesses)?;
     let copy = copy()?;
+    let reached = reached(&copy, &rounds)?;
     eprintln!(
         "{} of {} mutants of `{module}`, {} harnesses",
         chosen.len(),
@@ -51,8 +56,8 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         rounds.iter().map(Vec::len).sum::<usize>()
     );
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    // What noticed one mistake is likely to notice the next, which is in the same function.
-    let mut first: Option<String> = None;
+    // What noticed one mistake is likely to notice the next in that function, or any.
+    let mut noticed: Vec<(&str, String)> = Vec::new();
     println!(
         "## Mutants of `{module}`, judged by proofs alone\n\n| mutant | noticed by |\n|---|---|"
     );
@@ -62,7 +67,21 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         let file = mutant["file"].as_str().ok_or("a mutant without a file")?;
         let original = std::fs::read_to_string(root().join(file))?;
         std::fs::write(copy.join(file), mutated(&original, mutant)?)?;
-        let fate = judge(&copy, first.as_ref(), &rounds, &harnesses)?;
+        let function = mutant["function"]["function_name"].as_str().map(last_name);
+        let asked = |name: &&String| function.is_none_or(|f| reached[*name].contains(f));
+        let function = function.unwrap_or_default();
+        let first = noticed
+            .iter()
+            .filter(|(_, name)| asked(&name))
+            .max_by_key(|(of, _)| *of == function)
+            .map(|(_, name)| name.clone());
+        let others = rounds.each_ref().map(|round| {
+            let others = round.iter().filter(|name| Some(*name) != first.as_ref());
+            others.filter(asked).collect()
+        });
+        let [quick, slow] = others;
+        let rounds = [first.iter().collect(), quick, slow];
+        let fate = judge(&copy, &rounds, &harnesses)?;
         std::fs::write(copy.join(file), &original)?;
         let (kind, shown) = match &fate {
             Fate::Noticed(by) => ("noticed", by.clone()),
@@ -72,7 +91,7 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
         };
         *counts.entry(kind).or_default() += 1;
         if let Fate::Noticed(by) = fate {
-            first = Some(by);
+            noticed.push((function, by));
         }
         println!("| {} | {shown} |", name.replace('|', "\\|"));
         eprintln!(
@@ -95,12 +114,24 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
     Ok(())
 }
 
-/// The mutants of a module, as `cargo mutants` lists them.
-fn mutants(module: &str) -> Outcome<Vec<Value>> {
+/// In such an order that any number of them, from the beginning, is spread evenly: by the fractional
+/// part of each one's number times the golden ratio.
+fn spread(mutants: &[Value]) -> Vec<&Value> {
+    let mut numbers: Vec<u32> = (0..).take(mutants.len()).collect();
+    let key = |number: &u32| number.wrapping_mul(0x9E37_79B9);
+    numbers.sort_by_key(key);
+    numbers
+        .iter()
+        .map(|&number| &mutants[number as usize])
+        .collect()
+}
+
+/// The mutants of a module, as `cargo mutants` lists them, whose names have that pattern.
+fn mutants(module: &str, pattern: &str) -> Outcome<Vec<Value>> {
     let [file, folder] = [format!("src/{module}.rs"), format!("src/{module}/**/*.rs")];
     let output = Command::new("cargo")
         .args(["mutants", "--list", "--json"])
-        .args(["--file", &file, "--file", &folder])
+        .args(["--file", &file, "--file", &folder, "--re", pattern])
         .current_dir(root())
         .output()?;
     if !output.status.success() {
@@ -178,33 +209,80 @@ fn mutated(text: &str, mutant: &Value) -> Outcome<String> {
     Ok(format!("{}{replacement}{}", &text[..begin], &text[end..]))
 }
 
-/// Runs that harness first, then round after round on the copy until something is not as it should be.
+/// The names of the functions that each harness's program has: a mutant of any other leaves that proof
+/// as it is, so it need not be run. (A function that only the compiler runs, for a constant, is in no
+/// program: its mutants may be called survivors without being any.)
+fn reached(copy: &Path, rounds: &[Vec<String>]) -> Outcome<BTreeMap<String, BTreeSet<String>>> {
+    let names = rounds.concat();
+    let status = kani(copy, &names)
+        .arg("--only-codegen")
+        .stdout(Stdio::null())
+        .status()?;
+    if !status.success() {
+        return Err("cargo kani does not compile the harnesses".into());
+    }
+    let mut written = Vec::new();
+    for target in std::fs::read_dir(copy.join("target/kani"))? {
+        let folder = target?.path().join("debug/deps");
+        for file in std::fs::read_dir(folder).into_iter().flatten() {
+            let file = file?;
+            if file
+                .path()
+                .to_string_lossy()
+                .ends_with(".kani-metadata.json")
+            {
+                written.push((file.metadata()?.modified()?, file.path()));
+            }
+        }
+    }
+    let (_, newest) = written.into_iter().max().ok_or("no metadata of Kani's")?;
+    let metadata: Value = serde_json::from_slice(&std::fs::read(newest)?)?;
+    let mut reached = BTreeMap::new();
+    for harness in metadata["proof_harnesses"].as_array().into_iter().flatten() {
+        let text = |what: &str| harness[what].as_str().ok_or("metadata of another kind");
+        let name = text("pretty_name")?.trim_start_matches("proofs::");
+        let map = text("goto_file")?.replace(".symtab.out", ".pretty_name_map.json");
+        let map: BTreeMap<String, Option<String>> = serde_json::from_slice(&std::fs::read(map)?)?;
+        let names = map
+            .values()
+            .flatten()
+            .flat_map(|name| name.split(|letter: char| letter != '_' && !letter.is_alphanumeric()));
+        reached.insert(name.to_owned(), names.map(str::to_owned).collect());
+    }
+    match names.iter().find(|name| !reached.contains_key(*name)) {
+        Some(name) => Err(format!("no program of {name} in Kani's metadata").into()),
+        None => Ok(reached),
+    }
+}
+
+/// `admit` of `Surroundings<'_, N>::admit`.
+fn last_name(function: &str) -> &str {
+    function.rsplit("::").next().unwrap_or(function)
+}
+
+/// `cargo kani` on the copy, for these harnesses.
+fn kani(copy: &Path, names: &[impl AsRef<str>]) -> Command {
+    let mut command = Command::new("cargo");
+    command.args(["kani", "--output-format", "terse", "--exact"]);
+    for name in names {
+        command.args(["--harness", &format!("proofs::{}", name.as_ref())]);
+    }
+    command.current_dir(copy).env_remove("CARGO_TARGET_DIR");
+    command.stderr(Stdio::null());
+    command
+}
+
+/// Runs round after round on the copy until something is not as it should be.
 fn judge(
     copy: &Path,
-    first: Option<&String>,
-    rounds: &[Vec<String>],
+    rounds: &[Vec<&String>],
     harnesses: &BTreeMap<String, Harness>,
 ) -> Outcome<Fate> {
-    let others = rounds.iter().map(|round| {
-        let others = round.iter().filter(|name| Some(*name) != first);
-        others.collect::<Vec<_>>()
-    });
-    for round in std::iter::once(first.into_iter().collect()).chain(others) {
-        if round.is_empty() {
-            continue;
-        }
-        let mut command = Command::new("cargo");
-        command.args(["kani", "--output-format", "terse", "--exact"]);
+    for round in rounds.iter().filter(|round| !round.is_empty()) {
         let limit = format!("{}s", LIMIT.as_secs());
-        command.args(["-Z", "unstable-options", "--harness-timeout", &limit]);
-        for name in &round {
-            command.args(["--harness", &format!("proofs::{name}")]);
-        }
-        let mut run = command
-            .current_dir(copy)
-            .env_remove("CARGO_TARGET_DIR")
+        let mut run = kani(copy, round)
+            .args(["-Z", "unstable-options", "--harness-timeout", &limit])
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
             .process_group(0)
             .spawn()?;
         let output = run.stdout.take().ok_or("no output of cargo kani")?;

@@ -31,7 +31,10 @@ fn main() -> ExitCode {
         ["prove", ref rest @ ..] => prove(rest),
         ["check"] => check(),
         ["kill", module, ref rest @ ..] => kill::run(module, rest),
-        _ => Err("matrix, prove [--all] [-j N] [NAME…], check, or kill MODULE [N [SKIP]]".into()),
+        _ => Err(
+            "matrix, prove [--all] [-j N] [NAME…], check, or kill MODULE [PATTERN] [N [SKIP]]"
+                .into(),
+        ),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
