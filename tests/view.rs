@@ -8,12 +8,14 @@ use common::{
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;
+use sidestep::avoid::Trend;
 use sidestep::config::Config;
 use sidestep::failsafe::StopReason;
 use sidestep::observation::{Observation, SonarReading, SonarSample, classify};
 use sidestep::quantity::{Angle, Instant, Length, Speed};
 use sidestep::ring::{Placement, Ring, Sonar};
 use sidestep::view::{Class, EchoMemory, Hazard, Look, Memory, Odometer, Pose, View, Witness};
+use sidestep::wall::Wall;
 use sidestep_spec::avoid as law;
 use sidestep_spec::view as promise;
 
@@ -658,7 +660,335 @@ fn the_side_of_a_box_is_nobody() {
     assert!(too_fast(sliding, |x| 0.76 - 5.0 * x), "it moves as well");
 }
 
+// ------------------------------------------------- what stands still, backward and turning
+
+/// What one sonar, straight ahead, says after each of these steps (way forward, way back, turn, range),
+/// which are repeated 25 times: a mm, mrad or mm of range more each tenth of a second.
+fn stepping(from: i32, [ahead, back, turned, range]: [i32; 4]) -> Vec<Hazard> {
+    let mut hearing = Hearing::new(&pioneer());
+    let mut tick = |k: i32| {
+        hearing.odometer = Odometer {
+            way: [ahead, back].map(|step| i64::from(step * k)),
+            turned: i64::from(turned * k),
+        };
+        hearing.hear(from + range * k, 10_000 + 100 * k as u64)
+    };
+    (0..25).map(&mut tick).collect()
+}
+
+fn becomes_still(from: i32, steps: [i32; 4]) -> bool {
+    let hazards = stepping(from, steps);
+    hazards.iter().any(|hazard| hazard.class == Class::Still)
+}
+
+/// A thing that stands ahead is still whether the robot drives at it, backs off or turns a little; one that
+/// keeps its distance meanwhile is not.
+//= view.INV-6
+#[test]
+fn what_stands_is_still_backward_and_turning() {
+    assert!(becomes_still(4_000, [100, 0, 0, -100]));
+    assert!(becomes_still(1_000, [0, 100, 0, 100]));
+    assert!(becomes_still(4_000, [100, 0, 30, -100]));
+    assert!(!becomes_still(1_000, [100, 0, 0, 0]), "it recedes");
+    assert!(!becomes_still(1_000, [0, 100, 0, 0]), "it follows");
+}
+
+/// A still thing is one until it was not heard for longer than a reading is fresh, to the millisecond.
+//= view.INV-6
+#[test]
+fn a_pause_begins_anew() {
+    for (pause, class) in [(500, Class::Still), (501, Class::Unknown)] {
+        let mut hearing = Hearing::new(&pioneer());
+        for tick in 0..=10 {
+            hearing.hear(1_000, 10_000 + 100 * tick);
+        }
+        assert_eq!(
+            hearing.hear(1_000, 11_000 + pause).class,
+            class,
+            "{pause} ms"
+        );
+    }
+}
+
+/// At which step something is said to be too fast.
+fn too_fast_at(steps: [i32; 4]) -> Option<usize> {
+    let hazards = stepping(4_500, steps);
+    hazards.iter().position(|hazard| hazard.too_fast)
+}
+
+/// Too fast is what was so in more readings than confirm a thing, by more than twice the tolerance in all.
+/// The robot's own way, forward or back, explains twice itself.
+//= view.INV-6
+#[test]
+fn too_fast_takes_several_readings() {
+    // 100 mm a reading are allowed, and 100 mm in all: the fifth excess of 25 mm is the first beyond.
+    assert_eq!(too_fast_at([0, 0, 0, -125]), Some(5));
+    assert_eq!(too_fast_at([0, 0, 0, -126]), Some(4));
+    assert_eq!(too_fast_at([0, 0, 0, -200]), Some(4));
+    for way in [[50, 0], [0, 50]] {
+        let [ahead, back] = way;
+        assert_eq!(too_fast_at([ahead, back, 0, -200]), None);
+        assert_eq!(too_fast_at([ahead, back, 0, -230]), Some(4));
+    }
+}
+
+/// A sonar that reads the same while the robot drives at what it hears is stuck after 400 mm, if it looks
+/// ahead; each change begins anew.
+//= view.INV-5
+#[test]
+fn a_sonar_that_never_changes_is_stuck() {
+    let stuck_at = |sonar: Sonar, changes: &[i32]| {
+        let mut hearing = Hearing::new(&pioneer());
+        hearing.sonar = sonar;
+        (0..30).position(|k: i32| {
+            hearing.odometer.way[0] = i64::from(50 * k);
+            let range = 1_000 + changes.iter().filter(|at| k >= **at).count() as i32;
+            hearing.hear(range, 10_000 + 100 * k as u64).stuck
+        })
+    };
+    let ring = pioneer_with::<8>().1;
+    let [ahead, aside] = [3, 0].map(|i| ring.sonars()[i]);
+    assert!(ahead.closing.face[0] >= 500 && aside.closing.face[0] < 500);
+    assert_eq!(stuck_at(ahead, &[]), Some(8));
+    assert_eq!(stuck_at(ahead, &[4]), Some(12));
+    assert_eq!(stuck_at(aside, &[]), None);
+}
+
+// ------------------------------------------------------------------------------------ walls
+
+/// A wall to the left or right as two sonars that look straight across hear it: one at `aside` m from the
+/// centre line, `along` of which it comes nearer per metre.
+fn hears_wall(along: f64, distance: f64, sonar: &Sonar) -> [f64; 3] {
+    let across = f64::from(sonar.axis.y.signum());
+    let normal = [along, across * (1.0 - along * along).sqrt()];
+    let [face, axis] = [sonar.position, sonar.axis].map(|v| [f64::from(v.x), f64::from(v.y)]);
+    let dot = |a: [f64; 2]| normal[0] * a[0] + normal[1] * a[1];
+    let off = distance - dot(face);
+    // To the perpendicular's foot, along the axis, and to the nearest point of a cone of 15°.
+    let angle = dot(axis).clamp(-1.0, 1.0).acos();
+    let nearest = (angle - f64::from(std::f32::consts::FRAC_PI_6) / 2.0).max(0.0);
+    [off, off / angle.cos(), off / nearest.cos()]
+}
+
+proptest! {
+    #![proptest_config(common::cases(1_000))]
+
+    /// A wall is found from two sonars that look straight across, and explains what the slanted ones
+    /// between them hear of it, from the nearest point of the cone to where the axis meets it; what is
+    /// clearly nearer or farther it does not explain, nor what looks away from it.
+    //= view.INV-6
+    #[test]
+    fn a_wall_explains_what_is_heard_of_it(
+        along in -0.25_f64..0.25, distance in 0.4_f64..2.0, left in any::<bool>(), share in 0.0_f64..=1.0,
+    ) {
+        let (config, ring) = pioneer_with::<16>();
+        let sonars = ring.sonars();
+        let is_left = |sonar: &&Sonar| (sonar.axis.y > 0.0) == left;
+        let across: Vec<&Sonar> = sonars.iter().filter(is_left).filter(|s| s.axis.x.abs() < 0.26).collect();
+        prop_assert_eq!(across.len(), 2);
+        let ranges = [0, 1].map(|i| hears_wall(along, distance, across[i])[0] as f32);
+        prop_assume!(ranges.iter().all(|range| *range > 0.1));
+        let wall = Wall::through([across[0], across[1]], ranges, &config).expect("a wall");
+        for sonar in sonars.iter().filter(is_left) {
+            let [off, axis, nearest] = hears_wall(along, distance, sonar);
+            let square_on = off / axis > 0.71 && sonar.axis.x.abs() > 0.26;
+            let range = nearest + share * (axis - nearest);
+            let explains = |range: f64| wall.explains(range as f32, sonar, &config);
+            if square_on {
+                prop_assert!(explains(range), "{range} of {nearest} to {axis}");
+                prop_assert!(!explains(nearest - 0.08) && !explains(axis + 0.08));
+            } else if off / axis < 0.69 || sonar.axis.x.abs() < 0.25 {
+                prop_assert!(!explains(range));
+            }
+        }
+        for sonar in sonars.iter().filter(|sonar| !is_left(sonar)) {
+            prop_assert!(!wall.explains(distance as f32, sonar, &config));
+        }
+        // Seen at more than a cone's half angle it would not have been heard like that.
+        let [one, other] = [across[0], across[1]];
+        let baseline = one.position.x - other.position.x;
+        let steep = [ranges[0], ranges[0] + 0.27 * baseline];
+        prop_assert!(Wall::through([one, other], steep, &config).is_none());
+        prop_assert!(Wall::through([one, one], [ranges[0]; 2], &config).is_none());
+    }
+}
+
+/// Along a wall a slanted sonar hears the same all the time, as if somebody walked ahead: it is still where
+/// the sonars that look straight across hear the same wall, and only there.
+//= view.INV-6
+#[test]
+fn a_wall_along_the_way_is_still() {
+    let (config, ring) = pioneer_with::<16>();
+    for left in [true, false] {
+        let side = |sonar: &&Sonar| (sonar.axis.y > 0.0) == left;
+        let across: Vec<usize> = (0..16)
+            .filter(|i| ring.sonars()[*i].axis.x.abs() < 0.26)
+            .collect();
+        let slanted = (0..16).find(|i| {
+            let at = &ring.sonars()[*i];
+            side(&at) && (0.5..0.7).contains(&at.axis.x)
+        });
+        let slanted = slanted.expect("a sonar at 50°");
+        let class = |wall: [bool; 2]| {
+            let mut memory = Memory::<16>::default();
+            let mut class = Class::Unknown;
+            for tick in 0..25_u16 {
+                let mut ranges = [5.0; 16];
+                for (i, range) in ranges.iter_mut().enumerate() {
+                    let sonar = &ring.sonars()[i];
+                    let [off, _, nearest] = hears_wall(0.0, 0.8, sonar);
+                    if across.contains(&i) && wall[usize::from(!side(&sonar))] {
+                        *range = off as f32;
+                    } else if i == slanted {
+                        *range = nearest as f32;
+                    }
+                }
+                let mut observation = in_order(10_000 + 100 * u64::from(tick), ranges);
+                let odometry = observation.odometry.as_mut().expect("odometry");
+                (odometry.x, odometry.speed) = (0.04 * f32::from(tick), 0.4);
+                let view = memory.update(&observation, Vector2::new(9.0, 0.0), &ring, &config);
+                class = view.expect("a view").hazard[slanted].class;
+            }
+            class
+        };
+        assert_eq!(class([true, false]), Class::Still, "left {left}");
+        assert_eq!(class([false, true]), Class::Unknown, "left {left}");
+    }
+}
+
 // ------------------------------------------------------------------ the view
+
+/// Points go from the robot's frame to the odometry's and back.
+#[test]
+fn frames_are_turned_and_moved() {
+    let pose = |heading: f32| Pose {
+        position: Vector2::new(1.0, 2.0),
+        heading: Angle::radians(heading).expect("an angle"),
+    };
+    let close = |a: Vector2<f32>, b: [f32; 2]| (a - Vector2::from(b)).amax() < 1e-5;
+    let point = Vector2::new(3.0, 4.0);
+    let left = pose(std::f32::consts::FRAC_PI_2);
+    assert!(close(left.to_world(point), [-3.0, 5.0]));
+    assert!(close(left.to_robot([-3.0, 5.0].into()), [3.0, 4.0]));
+    let slanted = pose(std::f32::consts::FRAC_PI_6);
+    let (sin, cos) = (0.5, 0.866_025_4);
+    let world = [1.0 + 3.0 * cos - 4.0 * sin, 2.0 + 3.0 * sin + 4.0 * cos];
+    assert!(close(slanted.to_world(point), world));
+    assert!(close(slanted.to_robot(world.into()), [3.0, 4.0]));
+}
+
+/// What a view says of the room: ahead within the angle of view, to the sides, straight across.
+#[test]
+fn rooms_are_measured() {
+    let (config, ring) = pioneer_with::<16>();
+    let view = |near: &dyn Fn(&Sonar) -> Option<f32>| {
+        let ranges = ring.sonars().map(|sonar| near(&sonar).unwrap_or(5.0));
+        let view = watch(&config, &[in_order(10_000, ranges)])[0].expect("odometry");
+        let both = |lengths: [Length; 2]| lengths.map(Length::get);
+        (view.ahead.get(), both(view.room), both(view.beside))
+    };
+    let far = 5.0;
+    assert_eq!(view(&|_| None), (far, [far; 2], [far; 2]));
+    let angle = config.view_half_angle;
+    let ahead = view(&|at| (at.heading.get().abs() <= angle).then_some(1.25));
+    assert_eq!(ahead.0, 1.25);
+    let slanted = view(&|at| (at.axis.x > 0.1 && at.axis.y > 0.0).then_some(1.25));
+    assert_eq!(slanted.1, [1.25, far]);
+    let slanted = view(&|at| (at.axis.x > 0.1 && at.axis.y < 0.0).then_some(1.25));
+    assert_eq!(slanted.1, [far, 1.25]);
+    // What is behind says nothing of the room to choose from.
+    let behind = view(&|at| (at.axis.x < -0.2).then_some(1.25));
+    assert_eq!(behind, (far, [far; 2], [far; 2]));
+    for (left, expected) in [(true, [0, 1]), (false, [1, 0])] {
+        let across = |at: &Sonar| at.axis.x.abs() < 0.1 && (at.axis.y > 0.0) == left;
+        let beside = view(&|at| across(at).then_some(0.75)).2;
+        let face = ring.sonars().iter().find(|at| across(at)).expect("one");
+        assert!((beside[expected[0]] - 0.75 - face.position.y.abs()).abs() < 1e-6);
+        assert_eq!(beside[expected[1]], far);
+    }
+}
+
+/// A reading that was there in the tick before is no news for the law.
+#[test]
+fn a_reading_of_the_last_tick_is_no_news() {
+    for (taken_at, seen) in [(10_000, false), (10_001, true)] {
+        let mut second = in_order(10_100, [1.0, 5.0, 5.0]);
+        if let Some(sample) = &mut second.sonar[0] {
+            sample.taken_at = Instant(taken_at);
+        }
+        let views = watch(&pioneer(), &[in_order(10_000, [5.0; 3]), second]);
+        let view = views[1].as_ref().expect("odometry");
+        assert_eq!(view.obstacle.is_some(), seen, "{taken_at}");
+    }
+}
+
+/// The law is told that what has stood still for so long does not move, and not before.
+#[test]
+fn the_law_is_told_what_stands() {
+    let views = ahead(&[1.0; 12]);
+    let told = |tick: usize| views[tick].obstacle.expect("an obstacle");
+    let speed_max = pioneer().obstacle_speed_max;
+    assert_eq!(told(1).trend, Trend::Unknown);
+    assert_eq!(told(1).speed.value.get(), speed_max);
+    assert_eq!(told(11).trend, Trend::Steady);
+    assert_eq!(told(11).speed.value.get(), 0.0);
+}
+
+/// A post that one sonar has heard for long, and then another after the robot has turned: `offset` m nearer
+/// or farther, with samples that were taken so late. Returns what both sonars hold in the two ticks after.
+/// Before, the other heard the wall behind.
+fn handed_over(offset: f32, second: bool, taken: u64) -> [[Hazard; 2]; 2] {
+    let (config, ring) = pioneer_with::<16>();
+    let heading = |i: usize| ring.sonars()[i].heading.get();
+    let nearest = |angle: f32| {
+        let off = |i: &usize| (heading(*i) - angle).abs();
+        (0..16)
+            .min_by(|a, b| off(a).total_cmp(&off(b)))
+            .expect("a sonar")
+    };
+    let [one, other] = [0.17, -0.17].map(nearest);
+    let turn = heading(one) - heading(other);
+    let mut memory = Memory::<16>::default();
+    let mut tick = |t: u64, heard: [f32; 2], turned: f32| {
+        let mut ranges = [5.0; 16];
+        [ranges[one], ranges[other]] = heard;
+        let mut observation = in_order(t, ranges);
+        observation.odometry.as_mut().expect("odometry").heading = turned;
+        if turned > 0.0 {
+            let sample = observation.sonar[other].as_mut().expect("a sample");
+            sample.taken_at = Instant(t - 100 + taken);
+        }
+        let view = memory.update(&observation, Vector2::new(9.0, 0.0), &ring, &config);
+        let view = view.expect("a view");
+        [view.hazard[one], view.hazard[other]]
+    };
+    for k in 0..=12 {
+        tick(10_000 + 100 * k, [1.0, 3.0], 0.0);
+    }
+    let heard = if second { 1.0 + offset } else { 5.0 };
+    [11_300, 11_400].map(|t| tick(t, [5.0, heard], turn))
+}
+
+/// What one sonar held is another's as soon as that hears it there: it is let go, and as still as it was.
+/// What is heard elsewhere, not at all, or no later says nothing of it.
+//= view.INV-3
+//= view.INV-6
+#[test]
+fn what_another_sonar_hears_is_handed_over() {
+    let [first, then] = handed_over(0.0, true, 100);
+    assert_eq!(first[0].range, 5_000, "let go");
+    assert_eq!(first[1].range, 1_000);
+    assert_eq!([first[1].class, then[1].class], [Class::Still; 2]);
+    let [first, then] = handed_over(-0.3, true, 100);
+    assert_eq!(first[0].range, 5_000, "something nearer hides it");
+    assert_eq!(then[1].class, Class::Unknown, "another thing");
+    let [first, _] = handed_over(0.3, true, 100);
+    assert_eq!(first[0].range, 1_000, "heard behind it");
+    let [first, _] = handed_over(0.0, false, 100);
+    assert_eq!(first[0].range, 1_000, "not heard");
+    let [first, _] = handed_over(0.0, true, 0);
+    assert_eq!(first[0].range, 1_000, "heard no later");
+}
 
 /// What must hold of every view.
 fn judge<const N: usize>(view: &View<N>, ring: &Ring<N>, config: &Config) {
