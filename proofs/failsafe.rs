@@ -3,7 +3,10 @@
 #[cfg(not(kani))]
 use super::kani;
 use sidestep::failsafe::{Action, StopReason};
+use sidestep::observation::SonarReading;
+use sidestep::quantity::Instant;
 use sidestep::shield::Shield;
+use sidestep::view::View;
 use sidestep_spec::failsafe as promise;
 
 fn any_action() -> Action {
@@ -83,8 +86,8 @@ pub fn worst_cause_is_named() {
 pub fn latched_stop_holds() {
     let config = super::view::BLIND_PIONEER;
     let ring = super::view::one_sonar(&config);
-    let mut shield = Shield::new(&config);
-    shield.refuse(any_reason(), sidestep::quantity::Instant(1000));
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    shield.refuse(any_reason(), Instant(1000));
     let was_latched = shield.is_latched();
     let view = super::view::any_view();
     shield.assess(&view, &ring);
@@ -101,4 +104,54 @@ pub fn latched_stop_holds() {
     ));
     kani::cover!(was_latched, "latched");
     kani::cover!(!was_latched && verdict.stop.is_none(), "free");
+}
+
+/// A sonar that goes stale and stays so, or comes back for a moment in between: the stop latches when it
+/// has been away for the latch time, if it was there once. A reset lets the robot go on with the next clear
+/// tick.
+//= failsafe.INV-7
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::fits, super::shield::always_fits)
+)]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, super::shield::some_plan))]
+pub fn what_is_overdue_latches() {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let clear = super::view::clear_view();
+    let was_ready: bool = kani::any();
+    if was_ready {
+        shield.assess(&clear, &ring);
+    }
+    let at = |later: u64, reading| View {
+        now: Instant(clear.now.0 + later),
+        sonar: [reading],
+        ..clear
+    };
+    let [away, since] = [0, 1].map(|_| u64::from(kani::any::<u16>()));
+    assert!(shield.assess(&at(0, SonarReading::Stale), &ring).is_some());
+    let back: bool = kani::any();
+    if back {
+        shield.assess(&at(away, clear.sonar[0]), &ring);
+        shield.assess(&at(away, SonarReading::Stale), &ring);
+    }
+    shield.assess(&at(away + since, SonarReading::Stale), &ring);
+    let lasted = if back { since } else { away + since };
+    assert!(promise::overdue_latches(
+        was_ready || back,
+        lasted,
+        5_000,
+        shield.is_latched()
+    ));
+    shield.reset();
+    assert!(!shield.is_latched());
+    let stop = shield.assess(&at(away + since, clear.sonar[0]), &ring);
+    assert!(stop.is_none());
+    kani::cover!(lasted == 5_000 && was_ready, "just long enough");
+    kani::cover!(lasted > 10_000 && !was_ready && !back, "never ready");
 }

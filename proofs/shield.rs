@@ -9,9 +9,9 @@ use sidestep::law::Advice;
 use sidestep::observation::SonarReading;
 use sidestep::preset;
 use sidestep::quantity::Instant;
-use sidestep::ring::Closing;
+use sidestep::ring::{Closing, Ring};
 use sidestep::shield::{
-    Admission, Guard, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
+    Admission, Guard, Limit, Limits, Motion, Plan, Shield, Surroundings, Twist, greatest,
 };
 use sidestep::view::{Class, Hazard, View};
 use sidestep_spec::shield as promise;
@@ -274,6 +274,80 @@ fn plan_covers(limits: &Limits, plan: &Plan, speed: i32, motion: i32) {
         [speed, limits.speed_gain(), motion],
         [limits.braking(), limits.reaction_time()],
     ));
+}
+
+/// A plan for a robot that may be moving either way and is told to move either way: the ways in both
+/// directions. Pioneer preset.
+//= shield.INV-11
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(minisat))]
+#[cfg_attr(kani, kani::unwind(70))]
+pub fn plan_covers_both_ways() {
+    let guard = const { Guard::new(&super::view::PIONEER) };
+    let limits = *guard.limits();
+    let speed = any_in(-100, 400);
+    let motion = Motion {
+        speed: any_in(0, 466),
+        backward: kani::any(),
+        turn_rate: 0,
+    };
+    match guard.plan(speed, 0, &motion) {
+        Some(plan) => assert!(promise::plan_suffices_both_ways(
+            plan.way,
+            plan.time,
+            [speed, limits.speed_gain()],
+            (motion.speed, motion.backward),
+            [limits.braking(), limits.reaction_time()],
+        )),
+        None => unreachable!("it is no faster than it may be"),
+    }
+    kani::cover!(
+        speed < 0 && motion.speed > 0 && !motion.backward,
+        "reversed"
+    );
+}
+
+/// How fast and how far a plan turns, for a robot that is told to drive at full speed or to stand, at any
+/// turn rate, its own and what it is told. Pioneer preset.
+//= shield.INV-11
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+pub fn plan_covers_turn() {
+    let guard = const { Guard::new(&super::view::PIONEER) };
+    let speed = if kani::any() { 400 } else { 0 };
+    let turn_rate = any_in(-20_000, 20_000);
+    let motion = Motion {
+        turn_rate: any_in(0, 20_000),
+        ..Motion::REST
+    };
+    match guard.plan(speed, turn_rate, &motion) {
+        Some(plan) => assert!(promise::turn_suffices(
+            plan.turn,
+            plan.turn_rate,
+            plan.time,
+            [turn_rate, motion.turn_rate]
+        )),
+        None => unreachable!("it is no faster than it may be"),
+    }
+    kani::cover!(speed == 0 && turn_rate < 0, "on the spot");
+}
+
+/// The clearance that is said to be needed, for the Pioneer preset and every speed that it may be told.
+//= shield.INV-2
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(40))]
+pub fn clearance_is_covered() {
+    let limits = pioneer();
+    let speed = any_in(0, limits.speed_max());
+    assert!(promise::covers_clearance(
+        limits.required_clearance(speed),
+        speed + limits.speed_gain(),
+        limits.class_speed(Class::Unknown),
+        [limits.braking(), limits.reaction_time()],
+    ));
+    kani::cover!(speed == 400, "full speed");
 }
 
 /// Passive safety is inductive: after any admitted plan, whatever robot and thing then do within
@@ -575,6 +649,114 @@ pub fn what_moves_was_admitted() {
     kani::cover!(admitted.speed == 0 && advised.speed > 300, "it does not");
 }
 
+/// A stand-in for plans: none for some speeds, else one by which its speed can be told.
+pub fn odd_plan(_guard: &Guard, speed: i32, turn_rate: i32, _motion: &Motion) -> Option<Plan> {
+    (speed % 3 != 0).then_some(Plan {
+        way: [speed, 0],
+        time: 0,
+        turn: 0,
+        turn_rate,
+    })
+}
+
+/// A stand-in for room: what is nearer than the plan is fast leaves none.
+pub fn odd_room(_limits: &Limits, hazard: &Hazard, _closing: &Closing, plan: &Plan) -> bool {
+    hazard.clearance >= plan.way[0]
+}
+
+/// A stand-in for contact in time.
+pub fn odd_contact(_limits: &Limits, distance: i32, closing: i32) -> bool {
+    closing > distance
+}
+
+/// What is admitted has a plan, room for it before everything that is seen, and, if it drives forward, time
+/// to contact.
+//= shield.INV-9
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, odd_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, odd_room))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::contact_within_stop_time, odd_contact)
+)]
+pub fn every_guard_is_asked() {
+    let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
+    let ring = super::view::one_sonar(&super::view::BLIND_PIONEER);
+    let hazard = [any_hazard()];
+    let ahead = kani::any::<bool>().then(|| (any_in(0, 20_000), any_in(0, 10_000)));
+    let surroundings = Surroundings {
+        hazard: &hazard,
+        ring: &ring,
+        motion: Motion::REST,
+        ahead,
+    };
+    let told = twist(any_in(-500, 500), any_in(-2_000, 2_000));
+    let admits = surroundings.admit(&guard, told);
+    #[cfg(kani)]
+    let (plan, contact) = (odd_plan, odd_contact);
+    #[cfg(not(kani))]
+    let (plan, contact) = (Guard::plan, Limits::contact_within_stop_time);
+    let limits = guard.limits();
+    let room = plan(&guard, told.speed, told.turn_rate, &Motion::REST).is_some_and(|plan| {
+        #[cfg(kani)]
+        let fits = odd_room;
+        #[cfg(not(kani))]
+        let fits = Limits::fits;
+        fits(limits, &hazard[0], &ring.sonars()[0].closing, &plan)
+    });
+    let touches = told.speed > 0
+        && ahead.is_some_and(|(distance, speed)| contact(limits, distance, told.speed + speed));
+    assert!(promise::admitted(1, 0, !admits || (room && !touches)));
+    assert!(admits || !room || touches);
+    kani::cover!(admits && ahead.is_some(), "it drives");
+    kani::cover!(!admits && room, "there is room, but not the time");
+    kani::cover!(!admits && !room && !touches, "there is none");
+}
+
+/// What made it slower than advised is said, whatever there is room for: P3-DX preset, any command before.
+//= shield.INV-20
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Surroundings::admit, odd_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
+#[cfg_attr(kani, kani::stub(crate::shield::no_tighter, any_curve))]
+pub fn what_is_slower_has_a_reason() {
+    let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
+    let ring = super::view::one_sonar(&super::view::BLIND_PIONEER);
+    let hazard = [any_hazard()];
+    let surroundings = Surroundings {
+        hazard: &hazard,
+        ring: &ring,
+        motion: Motion::REST,
+        ahead: None,
+    };
+    let advised = twist(any_in(-500, 500), any_in(-2_000, 2_000));
+    let last = twist(any_in(-100, 400), any_in(-1_500, 1_500));
+    let admission = guard.admissible(advised, last, [100; 2], &surroundings);
+    assert!(promise::slower_has_a_reason(
+        admission.twist.speed,
+        advised.speed,
+        admission.limit.is_some()
+    ));
+    kani::cover!(admission.limit.is_none() && advised.speed > 0, "as advised");
+    kani::cover!(
+        matches!(admission.limit, Some(Limit::Clearance { .. })),
+        "for want of room"
+    );
+    kani::cover!(admission.limit == Some(Limit::Base), "as fast as it can");
+}
+
+/// Every curve is as wide as advised.
+pub fn any_curve(_speed: i32, _turn_rate: i32, _advised: Twist) -> bool {
+    true
+}
+
 /// The test of the curvature is the formula of the invariant, for any advice that is heeded and
 /// anything that is not greater in either part.
 //= shield.INV-13
@@ -808,7 +990,7 @@ pub fn any_admission<const N: usize>(
 pub fn any_law_is_shielded() {
     let config = super::view::BLIND_PIONEER;
     let ring = super::view::one_sonar(&config);
-    let mut shield = Shield::new(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
     let clear = super::view::clear_view();
     // The stand-ins may ask for any clearance: go on where they let the robot go.
     kani::assume(shield.assess(&clear, &ring).is_none());
@@ -912,7 +1094,7 @@ fn stopped_by(signs: &promise::Signs, shield: &mut Shield, view: &View<1>) -> Op
 pub fn every_cause_stops() {
     let config = super::view::BLIND_PIONEER;
     let ring = super::view::one_sonar(&config);
-    let mut shield = Shield::new(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
     let clear = super::view::clear_view();
     kani::assume(shield.assess(&clear, &ring).is_none());
     let advice = Advice {
@@ -950,7 +1132,7 @@ pub fn every_cause_stops() {
 )]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
 pub fn a_stop_ends() {
-    let mut shield = Shield::new(&super::view::BLIND_PIONEER);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
     let view = super::view::any_view();
     let signs = signs(&view, 450, 0, false);
     let stop = stopped_by(&signs, &mut shield, &view);
@@ -959,6 +1141,372 @@ pub fn a_stop_ends() {
         matches!(stop, Some(StopReason::MinDistance { range: 450, .. })),
         "not far enough"
     );
+}
+
+/// Where these stand in for the guard, a tick shows what the guard is asked about.
+const SHOWN: bool = cfg!(kani);
+
+/// The advice upon which the stand-ins below admit any command within the limits.
+const ANYTHING: Advice = Advice {
+    speed: 0.4,
+    turn_rate: 1.0,
+};
+
+fn any_command(guard: &Guard, advised: Twist) -> Option<Admission> {
+    let limits = guard.limits();
+    (advised.speed == 400).then(|| Admission {
+        twist: twist(
+            any_in(-limits.reverse_speed_max(), limits.speed_max()),
+            any_in(-limits.turn_rate_max(), limits.turn_rate_max()),
+        ),
+        limit: None,
+    })
+}
+
+/// In place of what is admitted: how the robot is taken to move.
+pub fn motion_shown<const N: usize>(
+    guard: &Guard,
+    advised: Twist,
+    _last: Twist,
+    _elapsed: [i32; 2],
+    surroundings: &Surroundings<'_, N>,
+) -> Admission {
+    let Motion {
+        speed,
+        backward,
+        turn_rate,
+    } = surroundings.motion;
+    any_command(guard, advised).unwrap_or(Admission {
+        twist: twist(speed, turn_rate),
+        limit: backward.then_some(Limit::Base),
+    })
+}
+
+/// In place of what is admitted: the thing ahead, nothing being a hundred kilometres away.
+pub fn approach_shown<const N: usize>(
+    guard: &Guard,
+    advised: Twist,
+    _last: Twist,
+    _elapsed: [i32; 2],
+    surroundings: &Surroundings<'_, N>,
+) -> Admission {
+    let (distance, speed) = surroundings.ahead.unwrap_or((100_000_000, 0));
+    any_command(guard, advised).unwrap_or(Admission {
+        twist: twist(distance, speed),
+        limit: None,
+    })
+}
+
+/// In place of what is admitted: how long the base had to gain speed and turn rate.
+pub fn time_shown<const N: usize>(
+    guard: &Guard,
+    advised: Twist,
+    _last: Twist,
+    [gaining, turning]: [i32; 2],
+    _surroundings: &Surroundings<'_, N>,
+) -> Admission {
+    any_command(guard, advised).unwrap_or(Admission {
+        twist: twist(gaining, turning),
+        limit: None,
+    })
+}
+
+/// In place of what is admitted: what is advised.
+pub fn advice_shown<const N: usize>(
+    _guard: &Guard,
+    advised: Twist,
+    _last: Twist,
+    _elapsed: [i32; 2],
+    _surroundings: &Surroundings<'_, N>,
+) -> Admission {
+    Admission {
+        twist: advised,
+        limit: None,
+    }
+}
+
+/// A robot that was told any command at 1 s, which is returned, and nothing stops.
+fn told_anything() -> (Shield, Ring<1>, Twist) {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let clear = super::view::clear_view();
+    let stop = shield.assess(&clear, &ring);
+    assert!(stop.is_none());
+    let told = shield.admit(ANYTHING, &clear, &ring).command;
+    (shield, ring, twist(told.speed(), told.turn_rate()))
+}
+
+/// A stand-in for rounding a length or speed up, which `limits_are_rounded_up` has proved: 0 for 0 alone, and
+/// cheap for a solver.
+pub fn odd_up(metres: f32) -> i32 {
+    if metres == 0.0 {
+        0
+    } else {
+        1 + (metres.to_bits() >> 23) as i32
+    }
+}
+
+/// A stand-in for rounding down; both still let the ring be built.
+pub fn odd_down(metres: f32) -> i32 {
+    (metres.to_bits() >> 23) as i32
+}
+
+/// How a robot is taken to move that was told anything and measures anything.
+//= shield.INV-19
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, motion_shown))]
+#[cfg_attr(kani, kani::stub(crate::shield::millimetres_up, odd_up))]
+pub fn motion_is_covered() {
+    let (mut shield, ring, told) = told_anything();
+    let view = View {
+        speed: super::view::any_between(-10.0, 10.0),
+        turn_rate: super::view::any_between(-20.0, 20.0),
+        odometry_age: kani::any(),
+        ..super::view::clear_view()
+    };
+    let limits = *shield.limits();
+    let verdict = shield.admit(Advice::REST, &view, &ring);
+    let shown = verdict.command;
+    let backward = verdict.limit == Some(Limit::Base);
+    let age = view.odometry_age.min(limits.reaction_time() as u64) as i32;
+    assert!(
+        !SHOWN
+            || promise::motion_is_covered(
+                promise::Moving {
+                    speed: shown.speed(),
+                    backward,
+                    turn_rate: shown.turn_rate(),
+                },
+                promise::Moving {
+                    speed: odd_up(view.speed.abs()),
+                    backward: view.speed < 0.0,
+                    turn_rate: odd_up(view.turn_rate.abs()),
+                },
+                [told.speed, told.turn_rate],
+                [limits.acceleration(), age, limits.speed_error()],
+            )
+    );
+    kani::cover!(
+        !SHOWN || shown.speed() == told.speed && told.speed > 0,
+        "as told"
+    );
+    kani::cover!(!SHOWN || shown.speed() > 150 && told.speed < 100, "faster");
+    kani::cover!(!SHOWN || backward, "backward");
+}
+
+/// How a thing is taken to come that the law follows.
+//= shield.INV-19
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, approach_shown))]
+#[cfg_attr(kani, kani::stub(crate::shield::millimetres_up, odd_up))]
+#[cfg_attr(kani, kani::stub(crate::shield::millimetres_down, odd_down))]
+pub fn approach_is_covered() {
+    let (mut shield, ring, _) = told_anything();
+    let view = super::view::any_view();
+    let shown = shield.admit(Advice::REST, &view, &ring).command;
+    let shown = [shown.speed(), shown.turn_rate()];
+    let Some(obstacle) = view.obstacle else {
+        assert!(!SHOWN || shown == [100_000_000, 0]);
+        return;
+    };
+    let measured = [
+        odd_down(obstacle.distance.get()),
+        odd_up(obstacle.speed.value.get()),
+    ];
+    assert!(!SHOWN || promise::approach_is_covered(shown, measured, obstacle.contact_range));
+    kani::cover!(!SHOWN || shown[0] == 0, "within reach");
+    kani::cover!(!SHOWN || shown[0] > 100, "farther away");
+}
+
+/// The time in which the base may gain speed: a pause gives no licence to leap.
+//= shield.INV-6
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, time_shown))]
+pub fn a_pause_gives_no_licence() {
+    let (mut shield, ring, _) = told_anything();
+    let limits = *shield.limits();
+    let mut before = 1_000_i64;
+    // Another tick without a view in between, or none.
+    if kani::any() {
+        let now = u64::from(kani::any::<u16>());
+        shield.refuse(StopReason::OdometryStale, Instant(now));
+        before = before.max(now as i64);
+        let clear = super::view::clear_view();
+        let stop = shield.assess(&clear, &ring);
+        assert!(stop.is_some() == (before > 1_000));
+        kani::assume(stop.is_none());
+    }
+    let view = View {
+        now: Instant(u64::from(kani::any::<u16>())),
+        ..super::view::any_view()
+    };
+    let shown = shield.admit(Advice::REST, &view, &ring).command;
+    let since = view.now.0 as i64 - before;
+    let unseen = view.obstacle.is_some_and(|obstacle| !obstacle.seen_now);
+    assert!(
+        !SHOWN
+            || promise::time_to_gain(
+                [shown.speed(), shown.turn_rate()],
+                since,
+                limits.reaction_time(),
+                unseen
+            )
+    );
+    kani::cover!(!SHOWN || shown.speed() == 220, "all of a reaction time");
+    kani::cover!(
+        !SHOWN || (shown.turn_rate() > 0 && shown.speed() == 0),
+        "out of sight"
+    );
+}
+
+/// What is asked for is what was advised, in whole numbers; a robot that is stopped is not asked to drive
+/// ahead; and advice that makes no sense stops it.
+//= shield.INV-4
+//= shield.INV-13
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(kissat))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, any_fit))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::needed, any_needed))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, advice_shown))]
+pub fn advice_is_taken_whole() {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let clear = super::view::clear_view();
+    let stop = shield.assess(&clear, &ring);
+    let advice = any_advice();
+    let verdict = shield.admit(advice, &clear, &ring);
+    let (speed, turn_rate) = (verdict.command.speed(), verdict.command.turn_rate());
+    let sensible = promise::sensible(advice.speed, advice.turn_rate);
+    assert!(verdict.stop.is_none() == (stop.is_none() && sensible));
+    if stop.is_none() && sensible && SHOWN {
+        assert!(promise::taken_whole(speed, advice.speed));
+        assert!(promise::taken_whole(turn_rate, advice.turn_rate));
+    }
+    if stop.is_some() {
+        assert!(promise::stop_is_kept(true, true, false, speed, turn_rate));
+        // What it may still do, it may as far as advised.
+        assert!(
+            !SHOWN
+                || !sensible
+                || advice.speed > 0.0
+                || promise::taken_whole(turn_rate, advice.turn_rate)
+        );
+    }
+    kani::cover!(speed > 0, "ahead");
+    kani::cover!(!SHOWN || (stop.is_some() && speed < 0), "it backs off");
+    kani::cover!(!sensible && stop.is_none(), "nonsense");
+}
+
+/// Where nothing has room, every tick stops the robot, and while it moves something too fast latches it.
+//= shield.INV-18
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, odd_room))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::needed, any_needed))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, odd_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, motion_shown))]
+pub fn no_room_stops() {
+    let (mut shield, ring, told) = told_anything();
+    let hazard = any_hazard();
+    let view = View {
+        hazard: [Hazard {
+            range: 4_000,
+            stuck: false,
+            ..hazard
+        }],
+        ..super::view::clear_view()
+    };
+    // The stand-in finds no room for the least speed, or for the greatest, where less is clear.
+    let [room, ample] = [1, 400].map(|least| hazard.clearance >= least);
+    let stop = shield.assess(&view, &ring);
+    let moves = told != Twist::REST;
+    let accused = moves && hazard.too_fast && !ample;
+    if SHOWN {
+        assert!(promise::no_room_stops(room, accused, stop.is_some()));
+        assert!(stop.is_none() || !room || accused);
+        assert!(shield.is_latched() == accused);
+    }
+    kani::cover!(!SHOWN || (stop.is_some() && !accused), "no room");
+    kani::cover!(!SHOWN || (accused && room), "too fast");
+}
+
+/// Contact that is possible within the stop time stops the robot, whether it moves or not, with the resume
+/// clearance on top while it is stopped; otherwise it does not.
+//= shield.INV-18
+#[cfg_attr(kani, kani::proof)]
+#[cfg_attr(kani, kani::stub(crate::math::sqrt, crate::proofs::math::any_sqrt))]
+#[cfg_attr(kani, kani::solver(cadical))]
+#[cfg_attr(kani, kani::unwind(70))]
+#[cfg_attr(kani, kani::stub(crate::shield::Limits::fits, always_fits))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::shield::Limits::contact_within_stop_time, odd_contact)
+)]
+#[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
+#[cfg_attr(kani, kani::stub(crate::shield::millimetres_up, odd_up))]
+#[cfg_attr(kani, kani::stub(crate::shield::millimetres_down, odd_down))]
+pub fn contact_in_time_stops() {
+    let config = super::view::BLIND_PIONEER;
+    let ring = super::view::one_sonar(&config);
+    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let clear = super::view::clear_view();
+    let stopped: bool = kani::any();
+    if !stopped {
+        shield.assess(&clear, &ring);
+    }
+    let any = super::view::any_view();
+    let view = View {
+        speed: f32::from(kani::any::<i16>()) / 64.0,
+        obstacle: any.obstacle,
+        ..clear
+    };
+    kani::assume(view.speed.abs() <= 10.0);
+    let Some(mut obstacle) = any.obstacle else {
+        return;
+    };
+    obstacle.speed.saturated = false;
+    let view = View {
+        obstacle: Some(obstacle),
+        ..view
+    };
+    // The robot's own share, told to rest: what was measured, and the error.
+    let own = if view.speed > 0.0 {
+        odd_up(view.speed) + 50
+    } else {
+        0
+    };
+    let closing = own + odd_up(obstacle.speed.value.get());
+    let left = (odd_down(obstacle.distance.get()) - obstacle.contact_range).max(0);
+    let left = (left - if stopped { 50 } else { 0 }).max(0);
+    let stop = shield.assess(&view, &ring);
+    if SHOWN {
+        assert!(promise::no_room_stops(true, closing > left, stop.is_some()));
+        assert!(stop.is_none() || closing > left);
+    }
+    kani::cover!(!SHOWN || (stop.is_some() && left > 0), "at a distance");
+    kani::cover!(!SHOWN || stop.is_none(), "in time");
 }
 
 /// SH.4: if contact is possible at any time within the stop time, the guard stops. In integers:

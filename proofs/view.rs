@@ -113,7 +113,7 @@ pub fn only_ranges_are_readings() {
 }
 
 /// Any number of a range.
-fn any_between(from: f32, to: f32) -> f32 {
+pub fn any_between(from: f32, to: f32) -> f32 {
     let value = kani::any();
     kani::assume((from..=to).contains(&value));
     value

@@ -400,6 +400,7 @@ impl Guard {
     //= shield.INV-6
     //= shield.INV-9
     //= shield.INV-15
+    //= shield.INV-20
     #[must_use]
     pub fn admissible<const N: usize>(
         &self,
@@ -629,7 +630,7 @@ pub struct Shield {
 impl Shield {
     /// A shield at rest.
     #[must_use]
-    pub fn new(config: &Config) -> Self {
+    pub const fn new(config: &Config) -> Self {
         Self {
             guard: Guard::new(config),
             monitor: Monitor::new(),
@@ -703,6 +704,7 @@ impl Shield {
 
     /// Stops for `reason`: the command is rest from now on.
     //= failsafe.INV-5
+    //= failsafe.INV-7
     fn halt(&mut self, reason: StopReason, now: Instant) -> Option<StopReason> {
         self.clear = 0;
         // Another cause in between does not make what is overdue arrive: only a clear tick does.
@@ -722,6 +724,7 @@ impl Shield {
     /// What demands a stop, the worst of it, with `margin` (mm) added to every distance needed.
     //= shield.INV-5
     //= shield.INV-16
+    //= shield.INV-18
     fn demand<const N: usize>(
         &self,
         view: &View<N>,
@@ -824,6 +827,7 @@ impl Shield {
     }
 
     /// How the robot may be moving now. What was measured is at most 10 m/s and 20 rad/s.
+    //= shield.INV-19
     fn motion<const N: usize>(&self, view: &View<N>) -> Motion {
         let limits = &self.guard.limits;
         let turn_rate = millimetres_up(view.turn_rate.abs()).max(self.last.0.turn_rate.abs());
@@ -846,6 +850,7 @@ impl Shield {
     }
 
     /// Distance left before contact (mm, at least 0) and speed (mm/s) of an obstacle.
+    //= shield.INV-19
     fn approach(obstacle: &crate::track::Obstacle) -> (i32, i32) {
         let distance = millimetres_down(obstacle.distance.get()) - obstacle.contact_range;
         (distance.max(0), millimetres_up(obstacle.speed.value.get()))

@@ -133,6 +133,7 @@ proptest! {
     /// What is overdue latches once it has lasted for the latch time without a clear tick in between,
     /// and nothing else that stops does; what was never there has not been lost.
     //= failsafe.INV-5
+    //= failsafe.INV-7
     #[test]
     fn what_lasts_is_latched(ready in any::<bool>(), ticks in ticks()) {
         let (config, ring) = pioneer_with::<16>();
@@ -153,11 +154,18 @@ proptest! {
                 prop_assert_eq!(shield.is_latched(), latched);
                 continue;
             };
+            let mut due = None;
             if reason.row().latches_in_time {
                 let lasted = now - *since.get_or_insert(now);
+                due = Some(lasted);
                 latched |= ready && lasted >= latch_time;
             }
+            let was_latched = shield.is_latched();
             let verdict = shield.refuse(reason, Instant(now));
+            if let Some(lasted) = due.filter(|_| !was_latched) {
+                let latches = shield.is_latched();
+                prop_assert!(promise::overdue_latches(ready, lasted, latch_time, latches));
+            }
             prop_assert_eq!(shield.is_latched(), latched, "{} at {}", reason, now);
             let (speed, turn_rate) = (verdict.command.speed(), verdict.command.turn_rate());
             prop_assert!(promise::latched_rests(latched, latched, speed, turn_rate));

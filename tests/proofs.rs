@@ -143,7 +143,7 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
     kinematics: wheels_are_limited, wheel_rates_are_finite;
     laser: checksum_is_as_specified, telegram_is_checked, written_telegram_is_accepted,
         values_are_ranges_or_missing, bearings_are_in_order;
-    failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds;
+    failsafe: actions_form_a_semilattice, worst_cause_is_named, latched_stop_holds, what_is_overdue_latches;
     interact: machine_keeps_its_promises, frames_are_borne_out, advice_is_within_limits;
     valley: share_is_a_share,
         order_makes_no_difference;
@@ -156,7 +156,9 @@ const HARNESSES: &[(&str, &str, fn())] = harnesses! {
         rest_is_always_safe, any_advice_is_limited, what_moves_was_admitted, curvature_is_kept,
         search_finds_the_greatest, worse_is_no_easier, farther_is_no_easier, turned_is_no_easier,
         turn_ends_before_contact, any_law_is_shielded, contact_time_is_sound,
-        stop_set_is_monotone;
+        stop_set_is_monotone, plan_covers_both_ways, plan_covers_turn, clearance_is_covered, every_guard_is_asked,
+        what_is_slower_has_a_reason, motion_is_covered, approach_is_covered, a_pause_gives_no_licence,
+        advice_is_taken_whole, no_room_stops, contact_in_time_stops;
     view: only_ranges_are_readings, echoes_are_held, nothing_is_forgotten, any_look_is_taken_in, any_observation_is_judged, any_reading_is_followed;
 };
 

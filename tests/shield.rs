@@ -605,11 +605,11 @@ impl Question {
                     )
             );
         }
-        // Slower than advised for a reason, but for a robot that can only brake; and no reason if
-        // it is not.
+        let reason = admission.limit.is_some();
+        prop_assert!(promise::slower_has_a_reason(speed, advised.speed, reason));
+        // And no reason if it is not, but for a robot that can only brake.
         let slower = speed.abs() < advised.speed.abs();
         let brakes = guard.plan(0, 0, &motion).is_none();
-        prop_assert!(!slower || admission.limit.is_some() || brakes);
         prop_assert!(admission.limit != Some(Limit::Base) || slower || brakes);
         Ok(())
     }
@@ -655,7 +655,7 @@ fn tick_in_order() -> BoxedStrategy<(View<16>, u64, Advice)> {
 
 /// Whether advice is something the shield asks its guard about.
 fn sensible(advice: Advice) -> bool {
-    advice.speed.abs() <= 10.0 && advice.turn_rate.abs() <= 20.0
+    promise::sensible(advice.speed, advice.turn_rate)
 }
 
 /// What a view shows to a robot that was last told this.
@@ -705,6 +705,17 @@ fn judged_tick(
     let signs = signs(config, ring, view, last, elapsed);
     let assessed = shield.assess(view, ring);
     assert!(promise::every_cause_stops(&signs, assessed.is_some()));
+    let guard = Guard::new(config);
+    let creep = guard.plan(1, 0, &Motion::REST).expect("the least speed");
+    let mut seen = view.hazard.iter().zip(ring.sonars());
+    let room = seen.all(|(hazard, at)| limits.fits(hazard, &at.closing, &creep));
+    // Whatever the robot does itself.
+    let contact = view.obstacle.is_some_and(|obstacle| {
+        let distance = (obstacle.distance.get() * 1000.0) as i32 - obstacle.contact_range;
+        let speed = (obstacle.speed.value.get() * 1000.0) as i32;
+        limits.contact_within_stop_time(distance.max(0), speed)
+    });
+    assert!(promise::no_room_stops(room, contact, assessed.is_some()));
     let verdict = shield.admit(advice, view, ring);
     let (speed, turn_rate) = (verdict.command.speed(), verdict.command.turn_rate());
     assert!(promise::within_limits(
@@ -740,6 +751,11 @@ fn judged_tick(
     ));
     assert!(promise::sees_where_it_goes(speed, ring.looks_back()));
     if sensible(advice) {
+        assert!(promise::slower_has_a_reason(
+            speed,
+            (advice.speed * 1000.0) as i32,
+            stopped || verdict.limit.is_some()
+        ));
         assert!(promise::no_tighter(
             speed,
             turn_rate,
@@ -778,6 +794,8 @@ proptest! {
     //= shield.INV-13
     //= shield.INV-15
     //= shield.INV-16
+    //= shield.INV-18
+    //= shield.INV-20
     #[test]
     fn any_law_is_shielded(
         config in usual_or_any_config(),

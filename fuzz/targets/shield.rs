@@ -178,8 +178,11 @@ fn question<const N: usize>(guard: &Guard, ring: &Ring<N>, bytes: &mut Bytes) {
             speed <= 0
         ));
     }
-    // Slower than advised, and for a reason.
-    assert!(speed.abs() >= advised.speed.abs() || limit.is_some() || stuck_fast(guard, &motion));
+    assert!(promise::slower_has_a_reason(
+        speed,
+        advised.speed,
+        limit.is_some()
+    ));
     if let Some(Limit::Clearance { sonar }) = limit {
         assert!(sonar < N);
     }
@@ -205,9 +208,4 @@ fn question<const N: usize>(guard: &Guard, ring: &Ring<N>, bytes: &mut Bytes) {
             ));
         }
     }
-}
-
-/// The robot is faster than it may ever be told: all it may do is brake.
-fn stuck_fast(guard: &Guard, motion: &Motion) -> bool {
-    guard.plan(0, 0, motion).is_none()
 }

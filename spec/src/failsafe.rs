@@ -36,3 +36,10 @@ pub fn latched_rests(was_latched: bool, latched: bool, speed: i32, turn_rate: i3
 pub fn worst_is_named<T: PartialOrd>(named: T, each: T) -> bool {
     named >= each
 }
+
+/// failsafe.INV-7: what has been overdue for `latch_time` (ms) without a pause latches the stop of a robot
+/// that had everything once, not before.
+#[must_use]
+pub fn overdue_latches(was_ready: bool, lasted: u64, latch_time: u64, latched: bool) -> bool {
+    latched == (was_ready && lasted >= latch_time)
+}

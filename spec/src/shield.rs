@@ -70,6 +70,23 @@ pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_tim
     2000 * b * x >= 2 * b * w * e + 1000 * w * w && b * t >= b * e + 1000 * w
 }
 
+/// shield.INV-2: the clearance that is said to be needed to go at up to `fastest` towards a thing that is
+/// no faster than `obstacle_speed` is no less than SH.3 gives exactly, and more by no more than the four
+/// quotients round up, mm.
+#[must_use]
+pub fn covers_clearance(
+    clearance: i32,
+    fastest: i32,
+    obstacle_speed: i32,
+    [braking, reaction_time]: [i32; 2],
+) -> bool {
+    let [c, w, o, b, e] =
+        [clearance, fastest, obstacle_speed, braking, reaction_time].map(i64::from);
+    // vε + v²/2b + V(ε + v/b), multiplied by 2000·b.
+    let exact = 2 * b * w * e + 1000 * w * w + 2 * o * (b * e + 1000 * w);
+    (exact..=exact + 5 * 2000 * b).contains(&(2000 * b * c))
+}
+
 /// The f32 products that convert limits are themselves rounded, by one part in ten million each.
 const ROUNDED: f64 = 2e-7;
 
@@ -173,6 +190,38 @@ pub fn plan_suffices(
     covers_rest(way, time, fastest, braking, reaction_time)
 }
 
+/// shield.INV-11: the way of a plan in each direction is enough for what the robot may do in it: for the
+/// speed it may have now, `motion`, in its direction, and for what it is told, with one gain, in that one.
+/// No way is taken in a direction in which it does neither.
+#[must_use]
+pub fn plan_suffices_both_ways(
+    way: [i32; 2],
+    time: i32,
+    [speed, gain]: [i32; 2],
+    (motion, backward): (i32, bool),
+    bounds: [i32; 2],
+) -> bool {
+    [false, true].iter().all(|&back| {
+        let rolls = if backward == back { motion } else { 0 };
+        let told = if speed != 0 && (speed < 0) == back {
+            speed
+        } else {
+            0
+        };
+        let way = way[usize::from(back)];
+        plan_suffices([way, time], [told, gain, rolls], bounds)
+            && (way == 0 || told != 0 || rolls != 0)
+    })
+}
+
+/// shield.INV-11: a plan turns as fast as the robot is told or turns already, and as far as that takes it
+/// in the plan's time; beyond ten radians it no longer matters.
+#[must_use]
+pub fn turn_suffices(turn: i32, turn_rate: i32, time: i32, [told, now]: [i32; 2]) -> bool {
+    let far = i64::from(turn_rate) * i64::from(time);
+    turn_rate == told.abs().max(now) && (turn == 10_000 || 1000 * i64::from(turn) >= far)
+}
+
 /// shield.INV-12: a turn ends before contact, V(ε + |ω|/α) ≤ left, multiplied by 1000·α; `left` is
 /// what the robot's own way and the age leave of the clearance, in thousandths of a millimetre.
 #[must_use]
@@ -258,4 +307,90 @@ pub fn every_cause_stops(signs: &Signs, stopped: bool) -> bool {
 #[must_use]
 pub fn nothing_else_stops(signs: &Signs, room: bool, stopped: bool) -> bool {
     !stopped || !room || signs.demand_a_stop()
+}
+
+/// shield.INV-18: a tick in which something leaves no room for the least speed, or in which contact is
+/// possible within the stop time, stops the robot.
+#[must_use]
+pub fn no_room_stops(room: bool, contact: bool, stopped: bool) -> bool {
+    stopped || (room && !contact)
+}
+
+/// How a robot moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Moving {
+    /// Its speed, mm/s.
+    pub speed: i32,
+    /// It rolls backward.
+    pub backward: bool,
+    /// How fast it turns, mrad/s.
+    pub turn_rate: i32,
+}
+
+/// shield.INV-19: the robot is taken to move as fast as it may: no slower than was measured, rounded up,
+/// with the error and what it can have gained in the `age` of the measurement (ms, ε at most), nor than it
+/// was told (mm/s, mrad/s); and no faster. It rests only if it was told to and rest was measured. Its
+/// direction is the measured one, or that which it was told.
+#[must_use]
+pub fn motion_is_covered(
+    taken: Moving,
+    measured: Moving,
+    told: [i32; 2],
+    [acceleration, age, error]: [i32; 3],
+) -> bool {
+    let turns = taken.turn_rate == measured.turn_rate.max(told[1].abs());
+    if measured.speed == 0 && told[0] == 0 {
+        return turns && taken.speed == 0;
+    }
+    let gain = (acceleration * age + 999) / 1000;
+    let rolls = taken.speed == (measured.speed + error + gain).max(told[0].abs());
+    let backward = measured.backward || (measured.speed == 0 && told[0] < 0);
+    turns && rolls && taken.backward == backward
+}
+
+/// shield.INV-19: a thing that the law follows is taken to be no farther from where it would touch (mm, 0 at
+/// least), and no slower (mm/s), than was measured, rounded down and up.
+#[must_use]
+pub fn approach_is_covered(
+    [distance, speed]: [i32; 2],
+    [range, measured_speed]: [i32; 2],
+    contact_range: i32,
+) -> bool {
+    distance == (range - contact_range).max(0) && speed == measured_speed
+}
+
+/// shield.INV-6: the time in which a base may have gained speed and turn rate is no longer than the time
+/// since the tick before (below zero if the clock went back), nor than ε; what is out of sight gives it none
+/// to gain speed.
+#[must_use]
+pub fn time_to_gain(
+    [gaining, turning]: [i32; 2],
+    since: i64,
+    reaction_time: i32,
+    unseen: bool,
+) -> bool {
+    let most = since.clamp(0, reaction_time.into());
+    i64::from(turning) == most && gaining == if unseen { 0 } else { turning }
+}
+
+/// shield.INV-13: advice becomes whole thousandths that are no greater than its f32 product, and less by
+/// less than one.
+#[must_use]
+pub fn taken_whole(thousandths: i32, advised: f32) -> bool {
+    let whole = thousandths.unsigned_abs() as f32;
+    let exact = (advised * 1000.0).abs();
+    let same_side = thousandths == 0 || (thousandths < 0) == (advised < 0.0);
+    same_side && whole <= exact && exact < whole + 1.0
+}
+
+/// Advice that makes sense: what is no number, or beyond 10 m/s or 20 rad/s, stops the robot.
+#[must_use]
+pub fn sensible(speed: f32, turn_rate: f32) -> bool {
+    speed.abs() <= 10.0 && turn_rate.abs() <= 20.0
+}
+
+/// shield.INV-20: what is slower than advised comes with a reason.
+#[must_use]
+pub fn slower_has_a_reason(speed: i32, advised: i32, reason: bool) -> bool {
+    reason || speed == advised
 }
