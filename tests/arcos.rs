@@ -433,10 +433,50 @@ fn a_tail_may_end_at_any_byte() {
 /// Every command number has a name of its own or none, and the commands have their numbers.
 #[test]
 fn commands_have_names_and_numbers() {
-    let names: Vec<&str> = (0..=u8::MAX).filter_map(command::name).collect();
-    let different: std::collections::BTreeSet<&&str> = names.iter().collect();
-    assert_eq!(names.len(), different.len());
-    assert_eq!(command::name(command::SIM_EXIT), Some("SIM_EXIT"));
+    let named = |number| command::name(number).map(|name| (number, name));
+    let names: Vec<(u8, &str)> = (0..=u8::MAX).filter_map(named).collect();
+    assert_eq!(
+        names,
+        [
+            (0, "PULSE"),
+            (1, "OPEN"),
+            (2, "CLOSE"),
+            (3, "POLLING"),
+            (4, "ENABLE"),
+            (5, "SETA"),
+            (6, "SETV"),
+            (7, "SETO"),
+            (8, "MOVE"),
+            (9, "ROTATE"),
+            (10, "SETRV"),
+            (11, "VEL"),
+            (12, "HEAD"),
+            (13, "DHEAD"),
+            (15, "SAY"),
+            (18, "CONFIG"),
+            (19, "ENCODER"),
+            (21, "RVEL"),
+            (23, "SETRA"),
+            (28, "SONAR"),
+            (29, "STOP"),
+            (30, "DIGOUT"),
+            (32, "VEL2"),
+            (35, "ADSEL"),
+            (40, "IOREQUEST"),
+            (44, "BUMPSTALL"),
+            (48, "SONARCYCLE"),
+            (50, "HOSTBAUD"),
+            (55, "E_STOP"),
+            (58, "GYRO"),
+            (62, "BATTERYINFO"),
+            (224, "SIM_SET_POSE"),
+            (225, "SIM_RESET"),
+            (236, "SIM_CTRL"),
+            (237, "SIM_STAT"),
+            (238, "SIM_MESSAGE"),
+            (239, "SIM_EXIT"),
+        ]
+    );
     assert_eq!(HostCommand::zero_odometry().number, command::SETO);
     assert_eq!(HostCommand::request_configuration().number, command::CONFIG);
     let codes = [9_600, 19_200, 38_400, 57_600, 115_200]
@@ -716,6 +756,44 @@ fn stalls_and_bumpers_are_told_apart() {
     );
 }
 
+/// Each flag is one bit, and the types under which the packet is sent are five.
+#[test]
+fn flags_and_kinds_are_told_apart() {
+    let flags = |flags| {
+        let information = StandardInformation {
+            flags,
+            ..StandardInformation::default()
+        };
+        [
+            information.motors_enabled(),
+            information.sonars_enabled(),
+            information.e_stop(),
+        ]
+    };
+    assert_eq!(flags(0), [false; 3]);
+    assert_eq!(
+        flags(StandardInformation::FLAG_MOTORS),
+        [true, false, false]
+    );
+    assert_eq!(
+        flags(StandardInformation::FLAG_SONARS),
+        [false, true, false]
+    );
+    assert_eq!(
+        flags(StandardInformation::FLAG_E_STOP),
+        [false, false, true]
+    );
+    let kinds: Vec<u8> = (0..=u8::MAX)
+        .filter(|kind| StandardInformation::is_kind(*kind))
+        .collect();
+    assert_eq!(kinds, [0x30, 0x31, 0x32, 0x33, 0x34]);
+}
+
+/// rad/s of wheels at these speeds, mm/s, right and left.
+fn rate_of(base: &BaseParameters, right: f32, left: f32) -> f32 {
+    (right - left) / 2.0 * base.differential_rad_mm
+}
+
 #[test]
 fn a_base_reports_in_its_own_units() {
     let (older, newer) = (BaseParameters::P3DX, BaseParameters::P3DX_SH);
@@ -729,6 +807,16 @@ fn a_base_reports_in_its_own_units() {
     // A turn of 25 degrees a second to the right at 200 mm/s, as a simulator reported it.
     let (speed, rate) = older.twist(277, 122);
     assert!((speed - 199.5).abs() < 1e-3 && (rate.to_degrees() + 24.9).abs() < 0.1);
+    let coarse = BaseParameters {
+        velocity_mm_s: 2.0,
+        range_mm: 0.5,
+        ..older
+    };
+    assert_eq!(
+        coarse.twist(100, 50),
+        (150.0, rate_of(&older, 100.0, 200.0))
+    );
+    assert_eq!(coarse.range_mm(1_001), 500.5);
     // The ring is symmetric.
     for (left, right) in [
         (0, 7),

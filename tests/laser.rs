@@ -178,7 +178,7 @@ fn a_scan_by_hand() {
     );
     assert!(law::is_scan(telegram.as_bytes()));
     let scan = Scan::new_checked(telegram, MeasuringMode::FieldsAbDazzled).expect("a scan");
-    assert_eq!(scan.variant(), variant);
+    assert_eq!((scan.variant(), scan.count()), (variant, 361));
     assert_eq!(scan.reading(0), Some(Reading::Range(1000)));
     assert_eq!(scan.reading(360), Some(Reading::Range(1360)));
     assert_eq!(scan.reading(361), None);
