@@ -34,10 +34,12 @@ pub struct Obstacle {
 
 /// How many distances of the tracked obstacle are kept.
 const HISTORY: usize = 8;
-/// They are at least this far apart, in ms.
-const HISTORY_GAP: u64 = 60;
+/// They are at least this far apart, in ms, but for the latest two.
+const HISTORY_GAP: u64 = 70;
 /// A trend is taken over at least this time, in ms: over less, noise outweighs motion.
 const TREND_TIME: u64 = 400;
+/// So the kept ones reach back far enough, however often a sonar is heard.
+const _: () = assert!((HISTORY as u64 - 2) * HISTORY_GAP >= TREND_TIME);
 /// Slower changes of distance than this count as none, in m/s. One per cent of range noise at
 /// 1.2 m over the trend time is 0.04 m/s.
 const TREND_RATE: f32 = 0.1;
