@@ -481,6 +481,200 @@ impl Stage {
     }
 }
 
+/// Turned about the start by an angle: people, goal and robot.
+fn turned(people: &[[f32; 2]], angle: f32) -> Stage {
+    let (sin, cos) = angle.sin_cos();
+    let turn = |[x, y]: [f32; 2]| [cos * x - sin * y, sin * x + cos * y];
+    let people: Vec<_> = people.iter().map(|at| turn(*at)).collect();
+    let mut stage = Stage::new(&people);
+    stage.pose.heading = Angle::radians(angle).expect("a heading");
+    stage.goal = turn([7.0, 0.0]).into();
+    stage
+}
+
+/// Whichever way it faces, it announces itself, stops at the same distance, passes and arrives.
+#[test]
+fn directions_do_not_matter() {
+    for angle in [0.0, 0.8, 1.9, -0.9, -2.4] {
+        let mut stage = turned(&[[4.0, 0.3], [4.2, -1.9]], angle);
+        stage.until("stop", 40);
+        let short = math::norm(stage.people[0].1 - stage.pose.position);
+        assert!((2.2..=2.31).contains(&short), "{angle}: {short}");
+        stage.until("traverse", 60);
+        let path = *stage.law.state().path().expect("a plan");
+        let off = path
+            .heading()
+            .minus(Angle::radians(angle).expect("an angle"))
+            .get();
+        assert!(off < -0.1, "{angle}: past the one on the left, {off}");
+        stage.until("resume", 60);
+        // Past both of them along the path, and no farther than it is long.
+        let way = math::norm(stage.pose.position - path.from());
+        assert!(
+            (way - path.length()).abs() < 0.1,
+            "{way} of {}",
+            path.length()
+        );
+        stage.until("arrived", 60);
+    }
+}
+
+/// What a path was made of is what it has.
+#[test]
+fn paths_have_their_numbers() {
+    let heading = Angle::radians(0.5).expect("an angle");
+    let path = Path::new(Vector2::new(1.0, 2.0), heading, 3.0, 0.25, 0.75).expect("a path");
+    assert_eq!(
+        (path.from(), path.heading()),
+        (Vector2::new(1.0, 2.0), heading)
+    );
+    assert_eq!(
+        (path.length(), path.speed(), path.turn_rate()),
+        (3.0, 0.25, 0.75)
+    );
+}
+
+/// M2 from each state, where nothing demands a stop and where something does.
+#[test]
+fn states_follow_each_other() {
+    let calm = Situation {
+        at_goal: false,
+        camera: true,
+        stop_shown: false,
+        in_path: false,
+        near: false,
+        path_free: false,
+        at_rest: true,
+        master: false,
+        order: None,
+        overdue: false,
+        plan: None,
+        aligned: true,
+        passed: false,
+        intruded: false,
+    };
+    let next = |state: State, now: Situation| interact::next_state(&state, &now);
+    let free = Situation {
+        path_free: true,
+        ..calm
+    };
+    let led = Situation {
+        master: true,
+        ..calm
+    };
+    let stopped = Situation {
+        stop_shown: true,
+        ..calm
+    };
+    let blind = Situation {
+        camera: false,
+        ..calm
+    };
+    let near = Situation {
+        near: true,
+        in_path: true,
+        ..calm
+    };
+    let there = Situation {
+        in_path: true,
+        ..calm
+    };
+    let overdue = Situation {
+        overdue: true,
+        ..calm
+    };
+    let turned_away = Situation {
+        aligned: false,
+        ..calm
+    };
+    for (state, now, expected) in [
+        (State::Follow, calm, State::Follow),
+        (State::Follow, there, State::Announce),
+        (State::Announce, near, State::Stop),
+        (State::Announce, calm, State::Follow),
+        (State::Resume, turned_away, State::Resume),
+        (State::Resume, calm, State::Follow),
+        (
+            State::Stop,
+            Situation {
+                at_rest: false,
+                ..free
+            },
+            State::Stop,
+        ),
+        (State::Stop, free, State::Resume),
+        (State::Stop, calm, State::AskInteract),
+        (State::AskInteract, calm, State::Wait),
+        (State::Wait, led, State::Master),
+        (State::Wait, free, State::Resume),
+        (State::Wait, overdue, State::Plan(Choice::Waypoint)),
+        (State::Wait, calm, State::Wait),
+        (State::NoFreePath, free, State::Resume),
+        (State::NoFreePath, overdue, State::AskInteract),
+        (State::NoFreePath, calm, State::NoFreePath),
+        (State::Master, led, State::Master),
+        (State::Master, calm, State::Wait),
+        (
+            State::Master,
+            Situation {
+                overdue: true,
+                ..led
+            },
+            State::Wait,
+        ),
+        (
+            State::Master,
+            Situation {
+                stop_shown: true,
+                ..led
+            },
+            State::Master,
+        ),
+        (State::Master, stopped, State::Stop),
+        (
+            State::Master,
+            Situation {
+                master: true,
+                ..blind
+            },
+            State::Stop,
+        ),
+        (State::Follow, stopped, State::Stop),
+        (State::Resume, blind, State::Stop),
+        (State::Arrived, stopped, State::Arrived),
+        (
+            State::Wait,
+            Situation {
+                at_goal: true,
+                ..stopped
+            },
+            State::Arrived,
+        ),
+    ] {
+        assert_eq!(next(state, now), expected, "{state:?}, {now:?}");
+    }
+}
+
+/// Who is hidden by somebody nearer is held on to; who is not, and is not seen, is let go.
+//= interact.INV-7
+#[test]
+fn who_is_hidden_is_held() {
+    let held = |other: [f32; 2], lost: [f32; 2]| {
+        let mut stage = Stage::new(&[other, lost]);
+        // It waits for somebody who stands in the way.
+        stage.until("wait", 60);
+        assert_eq!(stage.law.people().count(), 2);
+        stage.people.pop();
+        for _ in 0..20 {
+            stage.tick();
+        }
+        stage.law.people().count() == 2
+    };
+    assert!(held([2.5, 0.1], [3.6, 0.3]), "behind them");
+    assert!(!held([2.5, 0.1], [3.6, -1.3]), "beside them");
+    assert!(!held([3.6, 0.1], [2.5, 0.3]), "before them");
+}
+
 /// Nobody in the way: straight to the goal, without a word.
 #[test]
 fn nobody_there() {
