@@ -299,6 +299,87 @@ proptest! {
         }
     }
 
+    /// Which direction is taken, by angles in `f64`: the nearest to the region's own that passes everybody
+    /// whom the way comes level with on their side, the neighbours with the whole robot in the seen space.
+    /// Where there clearly is one it is taken, and where there clearly is none, none is.
+    //= valley.INV-3
+    #[test]
+    fn the_nearest_clear_direction_is_taken(
+        people in proptest::collection::vec(numbers().prop_map(person), 1..=PEOPLE_MAX),
+        radius in 0.05_f32..=0.5, distance in 0.0_f32..=1.0,
+    ) {
+        let geometry = kinect(radius, distance);
+        let scene = scene(&people);
+        let people = scene.people();
+        let half = 35_f64.to_radians();
+        let (robot, margin) = (f64::from(radius), f64::from(distance));
+        for index in 0..=people.len() {
+            let region = geometry.region(&scene, index).expect("a region");
+            let neighbours = [index.checked_sub(1), Some(index)].map(|i| people.get(i?));
+            let reach = neighbours.iter().flatten().map(|p| {
+                f64::from(p.range() + p.radius()) + robot + margin
+            });
+            let reach = reach.fold(0.0, f64::max);
+            let (mut least, mut most) = (-half, half);
+            let mut close = false;
+            for (i, person) in people.iter().enumerate() {
+                let [range, bearing] = [person.range(), person.bearing()].map(f64::from);
+                let clearance = f64::from(person.radius()) + robot + margin / 2.0;
+                // Nobody whose place decides by a hair's breadth.
+                prop_assume!((range - clearance).abs() > 1e-3 && (range - clearance - reach).abs() > 1e-3);
+                if range < clearance {
+                    close = true;
+                } else if range - clearance < reach {
+                    let off = (clearance / range).asin();
+                    if i < index {
+                        least = least.max(bearing + off);
+                    } else {
+                        most = most.min(bearing - off);
+                    }
+                }
+            }
+            for (side, neighbour) in neighbours.into_iter().enumerate() {
+                let Some(neighbour) = neighbour else { continue };
+                let range = f64::from(neighbour.range());
+                prop_assume!((range - robot).abs() > 1e-3);
+                // The cosine law for the arc on which the robot is as far away as they are.
+                let outermost = if range > robot { half - (robot / range).asin() } else { -9.0 };
+                if side == 0 {
+                    most = most.min(outermost);
+                } else {
+                    least = least.max(-outermost);
+                }
+            }
+            prop_assume!((region.available - region.least).abs() > 1e-4);
+            prop_assume!((most - least).abs() > 2e-3);
+            let open = region.is_wide_enough() && !close && least < most;
+            let valley = geometry.valley(&scene, index);
+            prop_assert_eq!(valley.is_some(), open, "{} to {}, {:?}", least, most, region);
+            if let Some(valley) = valley {
+                let own = f64::from(region.sine).asin();
+                let expected = own.max(least).min(most);
+                let found = f64::from(valley.heading.angle());
+                prop_assert!((found - expected).abs() < 1e-3, "{found} for {expected}");
+            }
+        }
+    }
+
+    /// A straight way keeps clear of a point as the distance of the two has it, in `f64`.
+    //= valley.INV-1
+    #[test]
+    fn keeping_clear_is_a_distance(
+        lateral in -3.0_f32..3.0, depth in -1.0_f32..4.0, clearance in 0.05_f32..2.0,
+        sine in -0.9_f32..0.9, length in 0.1_f32..4.0,
+    ) {
+        let heading = Heading::new(sine);
+        let [x, y, s, c] = [lateral, depth, heading.sine(), heading.cosine()].map(f64::from);
+        let along = (x * s + y * c).clamp(0.0, length.into());
+        let away = (x - s * along).hypot(y - c * along);
+        prop_assume!((away - f64::from(clearance)).abs() > 1e-5);
+        let clear = sidestep::valley::keeps_clear([lateral, depth], clearance, heading, length);
+        prop_assert_eq!(clear, away > f64::from(clearance));
+    }
+
     /// What is refused is named, and nothing that is no number is let in.
     #[test]
     fn only_people_are_people(one in any_f32(), other in any_f32(), radius in any_f32()) {
