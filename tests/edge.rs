@@ -887,6 +887,63 @@ fn unseen_is_not_free() {
     assert!(!found.passable, "{found:?}");
 }
 
+/// What a scanner sees of the way past a box, which is all that is there, is free as far across as it looks:
+/// up to `half` degrees to either side from where it sits, and no farther than a metre and a half.
+//= edge.INV-13
+#[test]
+fn the_field_of_view_bounds_the_way() {
+    let across = |half: f64, aside: f64, left: bool| {
+        let step = 0.5_f64.to_radians();
+        let low = if left { -0.2 } else { 0.0 };
+        let world = sides([1000.0, 1000.0 * low], [1200.0, 1000.0 * low + 200.0]);
+        // All round it ends a step before it began.
+        let beams = (2.0 * half / 0.5) as u32 + u32::from(half < 180.0);
+        let ranges: Vec<f32> = (0..beams)
+            .map(|i| {
+                let angle = -half.to_radians() + f64::from(i) * step;
+                let hit = cast([0.0, 1000.0 * aside], angle, &world);
+                hit.map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
+            })
+            .collect();
+        let placement = Placement {
+            x: 0.0,
+            y: aside as f32,
+            heading: 0.0,
+        };
+        let first = -half.to_radians() as f32;
+        let scan = Scan::new(placement, first, step as f32, 8.0, &ranges, Instant(0));
+        let along = edge([0.0, 0.0], [3.0, 0.0]);
+        let seen = point(1.0, low as f32 + 0.1);
+        let scan = scan.expect("a scan");
+        let found = edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, seen, 0.6);
+        found.gap.expect("a gap")
+    };
+    for half in [25.0_f64, 40.0, 60.0, 89.0, 100.0, 120.0, 180.0] {
+        for aside in [0.0, 0.05, -0.05] {
+            let reach = if half < 90.0 {
+                half.to_radians().tan()
+            } else {
+                9.0
+            };
+            let [gap, other] = [true, false].map(|left| across(half, aside, left));
+            let close = |found: f32, expected: f64| (f64::from(found) - expected).abs() < 0.02;
+            // Left of the box, which reaches to the edge's middle, and right of the other.
+            assert!(
+                close(gap.right, 0.0) && close(other.left, 0.0),
+                "{half}: {gap:?} {other:?}"
+            );
+            assert!(
+                close(gap.left, (aside + reach).min(1.5)),
+                "{half}, {aside}: {gap:?}"
+            );
+            assert!(
+                close(other.right, (aside - reach).max(-1.5)),
+                "{half}, {aside}: {other:?}"
+            );
+        }
+    }
+}
+
 /// Nothing to be seen where a sonar heard something: the point itself is in the way.
 #[test]
 fn what_only_a_sonar_hears_counts() {
