@@ -17,7 +17,7 @@ use sidestep::law::{Advice, Law};
 use sidestep::observation::SonarReading;
 use sidestep::preset;
 use sidestep::quantity::{Angle, Instant, Length};
-use sidestep::view::{Memory, View};
+use sidestep::view::{Class, Memory, View};
 use sidestep_spec::{avoid as motion, decide as law};
 
 /// Parts by which rounding may move a probability.
@@ -450,6 +450,9 @@ fn settings_are_checked() {
     // As good in one state and better in another is enough.
     let table = LossTable::with_dominated(&[[1.0, 2.0], [1.0, 1.0]]).expect("losses");
     assert_eq!(table.dominated(), Some(Dominated { action: 0, by: 1 }));
+    // So is as good in every state, and safer.
+    let table = LossTable::with_dominated(&[[1.0, 2.0], [1.0, 2.0]]).expect("losses");
+    assert_eq!(table.dominated(), Some(Dominated { action: 0, by: 1 }));
     let same = |far: f32, near: f32| {
         let table = LossTable::TABLE_2;
         DistanceLoss::with_dominated(table, metres(far), table, metres(near))
@@ -487,12 +490,16 @@ fn sonars_hear_as_modelled() {
 fn roundings_go_to_the_most_probable() {
     for greatest in 0..3 {
         let mut weights = [1.0; 3];
-        weights[greatest] = 5.0;
+        weights[greatest] = 4.0;
         let belief = Belief::from_weights(&weights).expect("weights");
-        for (state, part) in belief.parts().iter().enumerate() {
-            assert_eq!(state != greatest, *part == ONE / 7, "{belief:?}");
+        let parts = belief.parts();
+        assert!(parts.iter().sum::<u32>() == ONE && ONE % 6 != 0);
+        for (state, part) in parts.iter().enumerate() {
+            assert_eq!(state != greatest, *part == ONE / 6, "{belief:?}");
         }
     }
+    let third = ONE / 3;
+    assert_eq!(Belief::<3>::even().parts(), &[third + 1, third, third]);
 }
 
 // --------------------------------------------------------------------- the law
@@ -1032,6 +1039,48 @@ fn what_is_heard_beside_a_place_is_the_same() {
     );
     let (_, another) = turned(0.5);
     assert!(another.doubted.is_some(), "{another:?}");
+}
+
+/// What stands before a place hides it, and says nothing of it.
+#[test]
+fn a_hidden_place_is_as_probable_as_before() {
+    let (mut decide, _) = deciding::<3>(AHEAD);
+    let mut verdicts = [1.0, 0.5, 1.01]
+        .into_iter()
+        .zip(1..)
+        .map(|(range, tick)| verdict_on(&mut decide, echo(range), (0.0, 0.0), 40 * tick));
+    assert!(
+        verdicts
+            .next()
+            .is_some_and(|verdict| verdict.doubted.is_some())
+    );
+    assert!(
+        verdicts
+            .next()
+            .is_some_and(|verdict| verdict.doubted.is_some())
+    );
+    let last = verdicts.next().expect("a verdict");
+    assert!(
+        last.doubted.is_none() && last.probability > Some(0.8),
+        "{last:?}"
+    );
+}
+
+/// The law round a law tells it, too, that what has stood for long does not move.
+#[test]
+fn the_law_is_told_what_stands() {
+    for (class, speed) in [(Class::Still, 0.0), (Class::Unknown, 0.8)] {
+        let (mut decide, _) = deciding::<3>(AHEAD);
+        for tick in 1..3_u8 {
+            let range = 1.0 + 0.001 * f32::from(tick);
+            let mut view = looking_at(echo(range), 100 * u64::from(tick));
+            view.hazard[ahead()].class = class;
+            decide.advise(&view);
+        }
+        let shown = decide.law().shown.expect("the law was asked");
+        let obstacle = shown.obstacle.expect("an obstacle");
+        assert_eq!(obstacle.speed.value.get(), speed);
+    }
 }
 
 /// An echo is that of the place which its cone covers, though another beside it is as far off as the echo.

@@ -75,12 +75,13 @@ pub fn run(module: &str, words: &[&str]) -> Outcome {
             .filter(|(_, name)| asked(&name))
             .max_by_key(|(of, _)| *of == function)
             .map(|(_, name)| name.clone());
-        let others = rounds.each_ref().map(|round| {
+        let others = rounds.iter().map(|round| {
             let others = round.iter().filter(|name| Some(*name) != first.as_ref());
             others.filter(asked).collect()
         });
-        let [quick, slow] = others;
-        let rounds = [first.iter().collect(), quick, slow];
+        let rounds: Vec<Vec<&String>> = std::iter::once(first.iter().collect())
+            .chain(others)
+            .collect();
         let fate = judge(&copy, &rounds, &harnesses)?;
         std::fs::write(copy.join(file), &original)?;
         let (kind, shown) = match &fate {
@@ -140,21 +141,25 @@ fn mutants(module: &str, pattern: &str) -> Outcome<Vec<Value>> {
     Ok(serde_json::from_slice(&output.stdout)?)
 }
 
-/// The chapter's own harnesses, those that take a few seconds first. What other chapters' proofs
-/// would notice as well is not asked, or each survivor would take the whole ledger.
-fn rounds(module: &str, harnesses: &BTreeMap<String, Harness>) -> Outcome<[Vec<String>; 2]> {
+/// Seconds up to which harnesses are run together: quick ones before any that take longer.
+const ROUNDS: [f64; 4] = [3.0, 8.0, 16.0, f64::INFINITY];
+
+/// The chapter's own harnesses, quick ones first. What other chapters' proofs would notice as well is not
+/// asked, or each survivor would take the whole ledger.
+fn rounds(
+    module: &str,
+    harnesses: &BTreeMap<String, Harness>,
+) -> Outcome<[Vec<String>; ROUNDS.len()]> {
     let (_, verdicts) = ledger::read_ledger(harnesses);
-    let mut rounds = [const { Vec::new() }; 2];
+    let mut rounds = [const { Vec::new() }; ROUNDS.len()];
     let own = format!("{module}::");
     for (name, harness) in harnesses.iter().filter(|(name, _)| name.starts_with(&own)) {
         // One that fails without a mistake would notice every one.
         let verdict = verdicts.get(name).filter(|verdict| verdict.holds(harness));
         let verdict = verdict.ok_or_else(|| format!("{name} is not verified: prove it first"))?;
-        let slow = !verdict
-            .seconds
-            .parse()
-            .is_ok_and(|seconds: f64| seconds <= 10.0);
-        rounds[usize::from(slow)].push(name.clone());
+        let seconds = verdict.seconds.parse().unwrap_or(f64::INFINITY);
+        let round = ROUNDS.iter().take_while(|most| seconds > **most).count();
+        rounds[round].push(name.clone());
     }
     Ok(rounds)
 }
