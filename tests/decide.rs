@@ -682,6 +682,8 @@ fn what_appears_is_looked_at_again() {
     };
     assert_eq!(through(&[4.0, 1.0], &config), [(4.0, 100), (4.0, 100)]);
     assert_eq!(times(&[4.0, 1.0, 4.0]), [100, 100, 300]);
+    // What is no range is not for it to judge.
+    assert_eq!(times(&[4.0, 0.0, 4.0]), [100, 200, 300]);
     assert_eq!(times(&[4.0, 1.0, 0.95]), [100, 100, 300]);
     assert_eq!(times(&[4.0, 1.0, 2.0, 0.9]), [100, 100, 100, 400]);
     assert_eq!(times(&[1.0, 0.9, 5.0, 0.7, 0.6]), [100, 200, 300, 400, 500]);

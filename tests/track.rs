@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use sidestep::avoid::Trend;
 use sidestep::config::Config;
+use sidestep::observation::Sighting;
 use sidestep::quantity::Instant;
 use sidestep::ring::Ring;
 use sidestep::track::Obstacle;
@@ -213,6 +214,74 @@ proptest! {
         prop_assert_eq!(following.tick(100, &[(sonar, range)]).is_some(), ahead);
         prop_assert!(law::wrap(off).is_finite());
     }
+}
+
+/// Beside the angle of view it is followed where the robot, as wide as it is and the margin, would touch it.
+#[test]
+fn what_the_robot_would_touch_is_ahead() {
+    let mut following = Following::new();
+    let sonar = following.near(0.87);
+    let half = following.config.robot_radius + following.config.corridor_margin;
+    let at = following.ring.sonars()[sonar];
+    let range = (half - at.position.y) / at.axis.y;
+    assert!(following.point(sonar, range).x < following.point(sonar, range).y);
+    assert!(
+        following
+            .clone()
+            .tick(100, &[(sonar, range - 0.01)])
+            .is_some()
+    );
+    assert!(following.tick(100, &[(sonar, range + 0.01)]).is_none());
+}
+
+/// What has stood for a second does not move, whatever its echoes scatter meanwhile; what is not in sight any
+/// more has no trend.
+#[test]
+fn what_stands_is_steady() {
+    let mut following = Following::new();
+    let ahead = following.near(0.17);
+    let mut told = None;
+    for tick in 0..16_u8 {
+        // Half a second of 0.12 m/s at the end, within what a still thing's echoes may scatter.
+        let range = 1.0 - 0.012 * f32::from(tick.saturating_sub(11));
+        told = following.tick(100, &[(ahead, range)]);
+    }
+    let told = told.expect("an obstacle");
+    assert_eq!((told.trend, told.speed.value.get()), (Trend::Steady, 0.0));
+    let unseen = following.tick(600, &[]).expect("remembered");
+    assert_eq!(unseen.trend, Trend::Unknown);
+}
+
+/// A camera's sighting says how fast it is, for the hold time.
+#[test]
+fn a_camera_says_how_fast() {
+    let speed = |age: u64| {
+        let mut following = Following::new();
+        let ahead = following.near(0.17);
+        let mut ranges = [SILENCE; 16];
+        ranges[ahead] = 1.0;
+        let mut observation = in_order(following.now, ranges);
+        observation.sighting = Some(Sighting {
+            displacement: 100.0,
+            scale: 0.003,
+            interval: 1.0,
+            direction: 0.0,
+            taken_at: Instant(following.now - age),
+        });
+        let (ring, config) = (following.ring, following.config);
+        let goal = Vector2::new(9.0, 0.0);
+        let view = following.memory.update(&observation, goal, &ring, &config);
+        view.expect("a view")
+            .obstacle
+            .expect("an obstacle")
+            .speed
+            .value
+            .get()
+    };
+    // 0.3 m in a second; without the camera nothing is known yet, which counts as v_o,max.
+    assert!((speed(0) - 0.3).abs() < 0.01, "{}", speed(0));
+    assert!((speed(1_000) - 0.3).abs() < 0.01);
+    assert_eq!(speed(1_001), 0.8);
 }
 
 /// Of several the nearest is followed, and stays it, by whatever sonar hears it, until another is clearly
