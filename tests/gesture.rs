@@ -554,3 +554,23 @@ fn rejections_say_why() {
         assert!(message.contains(part), "{message:?} does not say {part:?}");
     }
 }
+
+/// Joints are handed out from the neck to the wrists, left before right.
+#[test]
+fn joints_are_in_order() {
+    let at = |x| Some(Point::new(x, 0.0, 2.0));
+    let skeleton = Skeleton {
+        neck: at(0.0),
+        left_shoulder: at(0.1),
+        right_shoulder: at(0.2),
+        left_elbow: at(0.3),
+        right_elbow: at(0.4),
+        left_wrist: at(0.5),
+        right_wrist: None,
+        ..Skeleton::default()
+    };
+    let places = skeleton.joints().map(|joint| joint.map(|point| point.x));
+    let expected = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5];
+    assert_eq!(places[..6], expected.map(Some));
+    assert_eq!(places[6], None);
+}
