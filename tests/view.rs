@@ -725,6 +725,9 @@ fn too_fast_takes_several_readings() {
     assert_eq!(too_fast_at([0, 0, 0, -125]), Some(5));
     assert_eq!(too_fast_at([0, 0, 0, -126]), Some(4));
     assert_eq!(too_fast_at([0, 0, 0, -200]), Some(4));
+    // Up to 4 m/s and the tolerance it may be one thing that comes nearer; what leaps farther is another.
+    assert_eq!(too_fast_at([0, 0, 0, -440]), Some(4));
+    assert_eq!(too_fast_at([0, 0, 0, -460]), None);
     for way in [[50, 0], [0, 50]] {
         let [ahead, back] = way;
         assert_eq!(too_fast_at([ahead, back, 0, -200]), None);
@@ -829,7 +832,7 @@ fn a_wall_along_the_way_is_still() {
             side(&at) && (0.5..0.7).contains(&at.axis.x)
         });
         let slanted = slanted.expect("a sonar at 50°");
-        let class = |wall: [bool; 2]| {
+        let class = |wall: [bool; 2], scatter: f32| {
             let mut memory = Memory::<16>::default();
             let mut class = Class::Unknown;
             for tick in 0..25_u16 {
@@ -838,7 +841,7 @@ fn a_wall_along_the_way_is_still() {
                     let sonar = &ring.sonars()[i];
                     let [off, _, nearest] = hears_wall(0.0, 0.8, sonar);
                     if across.contains(&i) && wall[usize::from(!side(&sonar))] {
-                        *range = off as f32;
+                        *range = off as f32 + scatter * f32::from(tick % 2);
                     } else if i == slanted {
                         *range = nearest as f32;
                     }
@@ -851,8 +854,10 @@ fn a_wall_along_the_way_is_still() {
             }
             class
         };
-        assert_eq!(class([true, false]), Class::Still, "left {left}");
-        assert_eq!(class([false, true]), Class::Unknown, "left {left}");
+        assert_eq!(class([true, false], 0.01), Class::Still, "left {left}");
+        assert_eq!(class([false, true], 0.0), Class::Unknown, "left {left}");
+        // What comes and goes beside it is no wall.
+        assert_eq!(class([true, false], 0.2), Class::Unknown, "left {left}");
     }
 }
 
@@ -901,7 +906,8 @@ fn rooms_are_measured() {
     assert_eq!(behind, (far, [far; 2], [far; 2]));
     for (left, expected) in [(true, [0, 1]), (false, [1, 0])] {
         let across = |at: &Sonar| at.axis.x.abs() < 0.1 && (at.axis.y > 0.0) == left;
-        let beside = view(&|at| across(at).then_some(0.75)).2;
+        let (_, room, beside) = view(&|at| across(at).then_some(0.75));
+        assert_eq!([room[expected[0]], room[expected[1]]], [0.75, far]);
         let face = ring.sonars().iter().find(|at| across(at)).expect("one");
         assert!((beside[expected[0]] - 0.75 - face.position.y.abs()).abs() < 1e-6);
         assert_eq!(beside[expected[1]], far);
