@@ -493,7 +493,7 @@ fn roundings_go_to_the_most_probable() {
         weights[greatest] = 4.0;
         let belief = Belief::from_weights(&weights).expect("weights");
         let parts = belief.parts();
-        assert!(parts.iter().sum::<u32>() == ONE && ONE % 6 != 0);
+        assert!(parts.iter().sum::<u32>() == ONE && !ONE.is_multiple_of(6));
         for (state, part) in parts.iter().enumerate() {
             assert_eq!(state != greatest, *part == ONE / 6, "{belief:?}");
         }
