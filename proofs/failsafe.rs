@@ -5,7 +5,6 @@ use super::kani;
 use sidestep::failsafe::{Action, StopReason};
 use sidestep::observation::SonarReading;
 use sidestep::quantity::Instant;
-use sidestep::shield::Shield;
 use sidestep::view::View;
 use sidestep_spec::failsafe as promise;
 
@@ -84,9 +83,7 @@ pub fn worst_cause_is_named() {
     kani::stub(crate::shield::Guard::admissible, super::shield::any_admission)
 )]
 pub fn latched_stop_holds() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = super::shield::at_rest();
     shield.refuse(any_reason(), Instant(1000));
     let was_latched = shield.is_latched();
     let view = super::view::any_view();
@@ -120,9 +117,7 @@ pub fn latched_stop_holds() {
 )]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, super::shield::some_plan))]
 pub fn what_is_overdue_latches() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = super::shield::at_rest();
     let clear = super::view::clear_view();
     let was_ready: bool = kani::any();
     if was_ready {

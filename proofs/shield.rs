@@ -507,6 +507,24 @@ pub fn rest_is_always_safe() {
     kani::cover!(left == 0, "in contact");
 }
 
+/// A shield of a robot with one sonar that has not moved yet, and its ring.
+pub fn at_rest() -> (Shield, Ring<1>) {
+    (
+        const { Shield::new(&super::view::BLIND_PIONEER) },
+        super::view::one_sonar(&super::view::BLIND_PIONEER),
+    )
+}
+
+/// A robot at rest before one hazard.
+fn before<'a>(hazard: &'a [Hazard; 1], ring: &'a Ring<1>) -> Surroundings<'a, 1> {
+    Surroundings {
+        hazard,
+        ring,
+        motion: Motion::REST,
+        ahead: None,
+    }
+}
+
 /// Whether there is room may be answered in any way.
 pub fn any_fit(_limits: &Limits, _hazard: &Hazard, _closing: &Closing, _plan: &Plan) -> bool {
     kani::any()
@@ -627,12 +645,7 @@ pub fn what_moves_was_admitted() {
     let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
     let ring = super::view::one_sonar(&config);
     let hazard = [any_hazard()];
-    let surroundings = Surroundings {
-        hazard: &hazard,
-        ring: &ring,
-        motion: Motion::REST,
-        ahead: None,
-    };
+    let surroundings = before(&hazard, &ring);
     let advised = twist(any_in(-10_000, 10_000), any_in(-20_000, 20_000));
     let last = twist(any_in(-100, 400), 0);
     let admitted = guard
@@ -688,25 +701,19 @@ pub fn every_guard_is_asked() {
     let hazard = [any_hazard()];
     let ahead = kani::any::<bool>().then(|| (any_in(0, 20_000), any_in(0, 10_000)));
     let surroundings = Surroundings {
-        hazard: &hazard,
-        ring: &ring,
-        motion: Motion::REST,
         ahead,
+        ..before(&hazard, &ring)
     };
     let told = twist(any_in(-500, 500), any_in(-2_000, 2_000));
     let admits = surroundings.admit(&guard, told);
     #[cfg(kani)]
-    let (plan, contact) = (odd_plan, odd_contact);
+    let (plan, fits, contact) = (odd_plan, odd_room, odd_contact);
     #[cfg(not(kani))]
-    let (plan, contact) = (Guard::plan, Limits::contact_within_stop_time);
+    let (plan, fits, contact) = (Guard::plan, Limits::fits, Limits::contact_within_stop_time);
     let limits = guard.limits();
-    let room = plan(&guard, told.speed, told.turn_rate, &Motion::REST).is_some_and(|plan| {
-        #[cfg(kani)]
-        let fits = odd_room;
-        #[cfg(not(kani))]
-        let fits = Limits::fits;
-        fits(limits, &hazard[0], &ring.sonars()[0].closing, &plan)
-    });
+    let closing = &ring.sonars()[0].closing;
+    let room = plan(&guard, told.speed, told.turn_rate, &Motion::REST)
+        .is_some_and(|plan| fits(limits, &hazard[0], closing, &plan));
     let touches = told.speed > 0
         && ahead.is_some_and(|(distance, speed)| contact(limits, distance, told.speed + speed));
     assert!(promise::admitted(1, 0, !admits || (room && !touches)));
@@ -730,12 +737,7 @@ pub fn what_is_slower_has_a_reason() {
     let guard = const { Guard::new(&super::view::BLIND_PIONEER) };
     let ring = super::view::one_sonar(&super::view::BLIND_PIONEER);
     let hazard = [any_hazard()];
-    let surroundings = Surroundings {
-        hazard: &hazard,
-        ring: &ring,
-        motion: Motion::REST,
-        ahead: None,
-    };
+    let surroundings = before(&hazard, &ring);
     let advised = twist(any_in(-500, 500), any_in(-2_000, 2_000));
     let last = twist(any_in(-100, 400), any_in(-1_500, 1_500));
     let admission = guard.admissible(advised, last, [100; 2], &surroundings);
@@ -988,9 +990,7 @@ pub fn any_admission<const N: usize>(
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, any_plan))]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, any_admission))]
 pub fn any_law_is_shielded() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let clear = super::view::clear_view();
     // The stand-ins may ask for any clearance: go on where they let the robot go.
     kani::assume(shield.assess(&clear, &ring).is_none());
@@ -1067,9 +1067,12 @@ fn signs(view: &View<1>, least: i32, elapsed: i64, moving: bool) -> promise::Sig
 }
 
 /// Whether a view stops the robot: for any sign that demands it and, where there is room, for nothing else.
-fn stopped_by(signs: &promise::Signs, shield: &mut Shield, view: &View<1>) -> Option<StopReason> {
-    let ring = super::view::one_sonar(&super::view::BLIND_PIONEER);
-    let stop = shield.assess(view, &ring);
+fn stopped_by(
+    signs: &promise::Signs,
+    (shield, ring): (&mut Shield, &Ring<1>),
+    view: &View<1>,
+) -> Option<StopReason> {
+    let stop = shield.assess(view, ring);
     assert!(promise::every_cause_stops(signs, stop.is_some()));
     assert!(promise::nothing_else_stops(signs, ROOM, stop.is_some()));
     stop
@@ -1092,9 +1095,7 @@ fn stopped_by(signs: &promise::Signs, shield: &mut Shield, view: &View<1>) -> Op
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, any_admission))]
 pub fn every_cause_stops() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let clear = super::view::clear_view();
     kani::assume(shield.assess(&clear, &ring).is_none());
     let advice = Advice {
@@ -1108,7 +1109,7 @@ pub fn every_cause_stops() {
     view.now = Instant(clear.now.0.saturating_add_signed(elapsed.into()));
     let elapsed = view.now.0 as i64 - clear.now.0 as i64;
     let signs = signs(&view, 400, elapsed, moving);
-    let stop = stopped_by(&signs, &mut shield, &view);
+    let stop = stopped_by(&signs, (&mut shield, &ring), &view);
     let latches = stop.is_some_and(|stop| stop.action() == Action::LatchedStop);
     assert!(shield.is_latched() == latches);
     kani::cover!(stop.is_none() && moving, "it goes on");
@@ -1132,10 +1133,10 @@ pub fn every_cause_stops() {
 )]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
 pub fn a_stop_ends() {
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let view = super::view::any_view();
     let signs = signs(&view, 450, 0, false);
-    let stop = stopped_by(&signs, &mut shield, &view);
+    let stop = stopped_by(&signs, (&mut shield, &ring), &view);
     kani::cover!(stop.is_none(), "free");
     kani::cover!(
         matches!(stop, Some(StopReason::MinDistance { range: 450, .. })),
@@ -1227,9 +1228,7 @@ pub fn advice_shown<const N: usize>(
 
 /// A robot that was told any command at 1 s, which is returned, and nothing stops.
 fn told_anything() -> (Shield, Ring<1>, Twist) {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let clear = super::view::clear_view();
     let stop = shield.assess(&clear, &ring);
     assert!(stop.is_none());
@@ -1388,9 +1387,7 @@ pub fn a_pause_gives_no_licence() {
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::plan, some_plan))]
 #[cfg_attr(kani, kani::stub(crate::shield::Guard::admissible, advice_shown))]
 pub fn advice_is_taken_whole() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let clear = super::view::clear_view();
     let stop = shield.assess(&clear, &ring);
     let advice = any_advice();
@@ -1443,10 +1440,18 @@ pub fn no_room_stops() {
     let stop = shield.assess(&view, &ring);
     let moves = told != Twist::REST;
     let accused = moves && hazard.too_fast && !ample;
+    let latched = shield.is_latched();
     if SHOWN {
-        assert!(promise::no_room_stops(room, accused, stop.is_some()));
-        assert!(stop.is_none() || !room || accused);
-        assert!(shield.is_latched() == accused);
+        assert!(promise::no_room_stops(room, false, stop.is_some()));
+        assert!(promise::too_fast_latches(
+            moves,
+            hazard.too_fast,
+            ample,
+            latched
+        ));
+        // Nothing else in this view stops the robot, or latches the stop.
+        assert_eq!(stop.is_some(), !room || accused);
+        assert_eq!(latched, accused);
     }
     kani::cover!(!SHOWN || (stop.is_some() && !accused), "no room");
     kani::cover!(!SHOWN || (accused && room), "too fast");
@@ -1468,29 +1473,22 @@ pub fn no_room_stops() {
 #[cfg_attr(kani, kani::stub(crate::shield::millimetres_up, odd_up))]
 #[cfg_attr(kani, kani::stub(crate::shield::millimetres_down, odd_down))]
 pub fn contact_in_time_stops() {
-    let config = super::view::BLIND_PIONEER;
-    let ring = super::view::one_sonar(&config);
-    let mut shield = const { Shield::new(&super::view::BLIND_PIONEER) };
+    let (mut shield, ring) = at_rest();
     let clear = super::view::clear_view();
     let stopped: bool = kani::any();
     if !stopped {
         shield.assess(&clear, &ring);
     }
-    let any = super::view::any_view();
-    let view = View {
-        speed: f32::from(kani::any::<i16>()) / 64.0,
-        obstacle: any.obstacle,
-        ..clear
-    };
-    kani::assume(view.speed.abs() <= 10.0);
-    let Some(mut obstacle) = any.obstacle else {
+    let Some(mut obstacle) = super::view::any_view().obstacle else {
         return;
     };
     obstacle.speed.saturated = false;
     let view = View {
+        speed: f32::from(kani::any::<i16>()) / 64.0,
         obstacle: Some(obstacle),
-        ..view
+        ..clear
     };
+    kani::assume(view.speed.abs() <= 10.0);
     // The robot's own share, told to rest: what was measured, and the error.
     let own = if view.speed > 0.0 {
         odd_up(view.speed) + 50

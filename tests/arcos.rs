@@ -789,11 +789,6 @@ fn flags_and_kinds_are_told_apart() {
     assert_eq!(kinds, [0x30, 0x31, 0x32, 0x33, 0x34]);
 }
 
-/// rad/s of wheels at these speeds, mm/s, right and left.
-fn rate_of(base: &BaseParameters, right: f32, left: f32) -> f32 {
-    (right - left) / 2.0 * base.differential_rad_mm
-}
-
 #[test]
 fn a_base_reports_in_its_own_units() {
     let (older, newer) = (BaseParameters::P3DX, BaseParameters::P3DX_SH);
@@ -814,7 +809,7 @@ fn a_base_reports_in_its_own_units() {
     };
     assert_eq!(
         coarse.twist(100, 50),
-        (150.0, rate_of(&older, 100.0, 200.0))
+        (150.0, -50.0 * older.differential_rad_mm)
     );
     assert_eq!(coarse.range_mm(1_001), 500.5);
     // The ring is symmetric.

@@ -488,12 +488,13 @@ fn sonars_hear_as_modelled() {
 /// What rounding loses goes to the most probable state, wherever that is.
 #[test]
 fn roundings_go_to_the_most_probable() {
+    const { assert!(!ONE.is_multiple_of(6), "something is lost") };
     for greatest in 0..3 {
         let mut weights = [1.0; 3];
         weights[greatest] = 4.0;
         let belief = Belief::from_weights(&weights).expect("weights");
         let parts = belief.parts();
-        assert!(parts.iter().sum::<u32>() == ONE && !ONE.is_multiple_of(6));
+        assert_eq!(parts.iter().sum::<u32>(), ONE);
         for (state, part) in parts.iter().enumerate() {
             assert_eq!(state != greatest, *part == ONE / 6, "{belief:?}");
         }
@@ -528,8 +529,15 @@ const AHEAD: Advice = Advice {
 };
 
 fn deciding<const N: usize>(advice: Advice) -> (Decide<Told<N>, N>, Config) {
+    deciding_by(Parameters::USUAL, advice)
+}
+
+fn deciding_by<const N: usize>(
+    parameters: Parameters,
+    advice: Advice,
+) -> (Decide<Told<N>, N>, Config) {
     let (config, ring) = pioneer_with::<N>();
-    let settings = Settings::usual(&config).expect("usual");
+    let settings = Settings::new(parameters, &config).expect("in range");
     let told = Told {
         advice,
         shown: None,
@@ -712,11 +720,7 @@ fn looking_at(reading: SonarReading, t: u64) -> View<3> {
 
 /// The sonar that looks most nearly straight ahead.
 fn ahead() -> usize {
-    let (_, ring) = pioneer_with::<3>();
-    let off = |i: usize| ring.sonars()[i].heading.get().abs();
-    (0..3)
-        .min_by(|i, j| off(*i).total_cmp(&off(*j)))
-        .expect("a sonar")
+    common::sonar_towards(&pioneer_with::<3>().1, 0.0)
 }
 
 /// One false echo is not shown to the law; a thing is, from its second look on, and is held when it is
@@ -918,7 +922,6 @@ fn echo(range: f32) -> SonarReading {
 /// With sonars that are often wrong, so that a second echo is doubted as the first is, and says by the
 /// probability which place it was taken to come from: 0.03 for a new one, some 0.14 for one heard before.
 fn doubting() -> Decide<Told<3>, 3> {
-    let (config, ring) = pioneer_with::<3>();
     let parameters = Parameters {
         sonar: SonarModel {
             miss: 0.5,
@@ -928,12 +931,7 @@ fn doubting() -> Decide<Told<3>, 3> {
         newcomer: 0.03,
         ..Parameters::USUAL
     };
-    let settings = Settings::new(parameters, &config).expect("in range");
-    let told = Told {
-        advice: AHEAD,
-        shown: None,
-    };
-    Decide::new(told, config, ring, settings)
+    deciding_by(parameters, AHEAD).0
 }
 
 const NEW: std::ops::Range<f32> = 0.029..0.031;
@@ -1047,21 +1045,9 @@ fn what_is_heard_beside_a_place_is_the_same() {
 #[test]
 fn a_hidden_place_is_as_probable_as_before() {
     let (mut decide, _) = deciding::<3>(AHEAD);
-    let mut verdicts = [1.0, 0.5, 1.01]
-        .into_iter()
-        .zip(1..)
-        .map(|(range, tick)| verdict_on(&mut decide, echo(range), (0.0, 0.0), 40 * tick));
-    assert!(
-        verdicts
-            .next()
-            .is_some_and(|verdict| verdict.doubted.is_some())
-    );
-    assert!(
-        verdicts
-            .next()
-            .is_some_and(|verdict| verdict.doubted.is_some())
-    );
-    let last = verdicts.next().expect("a verdict");
+    let [first, hiding, last] = [(1.0, 40), (0.5, 80), (1.01, 120)]
+        .map(|(range, t)| verdict_on(&mut decide, echo(range), (0.0, 0.0), t));
+    assert!(first.doubted.is_some() && hiding.doubted.is_some());
     assert!(
         last.doubted.is_none() && last.probability > Some(0.8),
         "{last:?}"

@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     any_f32, between, config, in_order, length, observations, pioneer, pioneer_with, settings,
-    usual_or_any_config,
+    sonar_towards, usual_or_any_config,
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -759,15 +759,15 @@ fn a_sonar_that_never_changes_is_stuck() {
 
 // ------------------------------------------------------------------------------------ walls
 
-/// A wall to the left or right as two sonars that look straight across hear it: one at `aside` m from the
-/// centre line, `along` of which it comes nearer per metre.
+/// What a sonar hears of a wall on its side, `distance` m from the robot's centre, whose normal leans
+/// forward by a share `along`, m: to the perpendicular's foot, where its axis meets the wall, and to the
+/// nearest point in a cone of 15°.
 fn hears_wall(along: f64, distance: f64, sonar: &Sonar) -> [f64; 3] {
     let across = f64::from(sonar.axis.y.signum());
     let normal = [along, across * (1.0 - along * along).sqrt()];
     let [face, axis] = [sonar.position, sonar.axis].map(|v| [f64::from(v.x), f64::from(v.y)]);
     let dot = |a: [f64; 2]| normal[0] * a[0] + normal[1] * a[1];
     let off = distance - dot(face);
-    // To the perpendicular's foot, along the axis, and to the nearest point of a cone of 15°.
     let angle = dot(axis).clamp(-1.0, 1.0).acos();
     let nearest = (angle - f64::from(std::f32::consts::FRAC_PI_6) / 2.0).max(0.0);
     [off, off / angle.cos(), off / nearest.cos()]
@@ -946,13 +946,7 @@ fn the_law_is_told_what_stands() {
 fn handed_over(offset: f32, second: bool, taken: u64) -> [[Hazard; 2]; 2] {
     let (config, ring) = pioneer_with::<16>();
     let heading = |i: usize| ring.sonars()[i].heading.get();
-    let nearest = |angle: f32| {
-        let off = |i: &usize| (heading(*i) - angle).abs();
-        (0..16)
-            .min_by(|a, b| off(a).total_cmp(&off(b)))
-            .expect("a sonar")
-    };
-    let [one, other] = [0.17, -0.17].map(nearest);
+    let [one, other] = [0.17, -0.17].map(|heading| sonar_towards(&ring, heading));
     let turn = heading(one) - heading(other);
     let mut memory = Memory::<16>::default();
     let mut tick = |t: u64, heard: [f32; 2], turned: f32| {

@@ -72,7 +72,7 @@ pub fn covers_rest(way: i32, time: i32, fastest: i32, braking: i32, reaction_tim
 
 /// shield.INV-2: the clearance that is said to be needed to go at up to `fastest` towards a thing that is
 /// no faster than `obstacle_speed` is no less than SH.3 gives exactly, and more by no more than the four
-/// quotients round up, mm.
+/// quotients round up: 1 mm each.
 #[must_use]
 pub fn covers_clearance(
     clearance: i32,
@@ -84,7 +84,7 @@ pub fn covers_clearance(
         [clearance, fastest, obstacle_speed, braking, reaction_time].map(i64::from);
     // vε + v²/2b + V(ε + v/b), multiplied by 2000·b.
     let exact = 2 * b * w * e + 1000 * w * w + 2 * o * (b * e + 1000 * w);
-    (exact..=exact + 5 * 2000 * b).contains(&(2000 * b * c))
+    (exact..=exact + 4 * 2000 * b).contains(&(2000 * b * c))
 }
 
 /// The f32 products that convert limits are themselves rounded, by one part in ten million each.
@@ -314,6 +314,13 @@ pub fn nothing_else_stops(signs: &Signs, room: bool, stopped: bool) -> bool {
 #[must_use]
 pub fn no_room_stops(room: bool, contact: bool, stopped: bool) -> bool {
     stopped || (room && !contact)
+}
+
+/// shield.INV-18: while the robot moves, something that was seen to come too fast latches the stop where it
+/// leaves no room for full speed.
+#[must_use]
+pub fn too_fast_latches(moves: bool, too_fast: bool, ample: bool, latched: bool) -> bool {
+    latched || !(moves && too_fast && !ample)
 }
 
 /// How a robot moves.

@@ -51,6 +51,13 @@ pub fn pioneer_with<const N: usize>() -> (Config, Ring<N>) {
     settings::fitted(&pioneer())
 }
 
+/// The sonar of a ring that looks most nearly in a direction of the robot's frame, radians.
+pub fn sonar_towards<const N: usize>(ring: &Ring<N>, heading: f32) -> usize {
+    let off = |i: &usize| (ring.sonars()[*i].heading.get() - heading).abs();
+    let nearest = (0..N).min_by(|a, b| off(a).total_cmp(&off(b)));
+    nearest.expect("a sonar")
+}
+
 /// Any `f32`: numbers as sensors give them, values where something changes, any bit pattern.
 pub fn any_f32() -> impl Strategy<Value = f32> {
     prop_oneof![
