@@ -305,6 +305,20 @@ fn one_obstacle_is_followed() {
     assert_eq!(distance(following.tick(100, &[(left, 1.0)])), 1.0);
 }
 
+/// Of two echoes near its place the one nearer to the place is it, whichever sonar is asked first.
+#[test]
+fn the_echo_at_its_place_is_it() {
+    for headings in [[0.17, -0.17], [-0.17, 0.17]] {
+        let mut following = Following::new();
+        let [sonar, other] = headings.map(|heading| following.near(heading));
+        let apart = following.point(sonar, 0.8) - following.point(other, 0.85);
+        assert!(apart.x.hypot(apart.y) < 0.4);
+        following.tick(100, &[(sonar, 0.8)]);
+        let told = following.tick(100, &[(sonar, 0.8), (other, 0.85)]);
+        assert_eq!(told.expect("an obstacle").distance.get(), 0.8);
+    }
+}
+
 /// What is not heard is remembered beside an echo from farther away, and not beside one from nearer.
 #[test]
 fn what_is_nearer_takes_over() {

@@ -48,6 +48,10 @@ struct Arguments {
     /// generated.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
+    /// Fail where the core carries other weights than these, by more than what machines round
+    /// differently.
+    #[arg(long)]
+    check: bool,
 }
 
 /// One skeleton of known gesture.
@@ -810,6 +814,44 @@ fn source(
     text + "]);\n"
 }
 
+/// Every number of a model, one after the other.
+fn numbers(model: &Model) -> Vec<f32> {
+    let mut numbers = match model.classifier() {
+        Classifier::SupportVectorMachine(machine) => machine.planes().concat(),
+        Classifier::NeuralNetwork(net) => {
+            let (hidden, output) = net.weights();
+            [hidden.concat(), output.concat()].concat()
+        }
+    };
+    for Prototype { six, arms } in model.prototypes().get() {
+        numbers.extend(
+            six.iter()
+                .chain(arms)
+                .flat_map(|(mean, spread)| [*mean, *spread]),
+        );
+    }
+    numbers
+}
+
+/// What two machines may round differently.
+const ROUNDING: f32 = 1e-3;
+
+/// The core carries this model, and no other.
+fn check(name: &str, trained: &Model, carried: &Model) -> Result<(), String> {
+    let [trained, carried] = [trained, carried].map(numbers);
+    let pairs = trained.iter().zip(&carried).enumerate();
+    for (i, (trained, carried)) in pairs {
+        if (trained - carried).abs() > ROUNDING * trained.abs().max(1.0) {
+            return Err(format!(
+                "{name}: number {i} is {trained} as trained, the core has {carried}: --write \
+                 src/gesture/weights.rs"
+            ));
+        }
+    }
+    println!("{name}: the core has these {} numbers", trained.len());
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     let generated = arguments.data.is_none();
@@ -871,6 +913,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(path) = &arguments.write {
         std::fs::write(path, source(&from, machine.planes(), &net, &usual))?;
         println!("\nwrote {}: run cargo fmt", path.display());
+    }
+    if arguments.check {
+        let carried = [Model::SUPPORT_VECTOR_MACHINE, Model::NEURAL_NETWORK];
+        for ((name, model), carried) in models.iter().zip(&carried) {
+            check(name, model, carried)?;
+        }
     }
     // S3 reports 98.2 % and no error. What is carried has to do as well with new people, though it
     // may reject a pose.
