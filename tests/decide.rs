@@ -463,6 +463,25 @@ fn settings_are_checked() {
     assert!(Belief::<2>::even().floored(f32::NAN).is_err());
 }
 
+/// However much all losses have in common, a tenth of a millisecond tells actions apart.
+//= decide.INV-10
+#[test]
+fn what_all_losses_have_in_common_makes_no_tie() {
+    let probable = ONE / 20 * 11;
+    let belief = Belief::from_parts([probable, ONE - probable]).expect("a belief");
+    let choices = [0.0, 10.0, 100.0].map(|common| {
+        let more = common + 0.001;
+        let table = LossTable::with_dominated(&[[common, more], [more, common]]).expect("losses");
+        table.choose(&belief)
+    });
+    assert!(
+        choices
+            .iter()
+            .all(|choice| law::same_choice(*choice, choices[0]))
+    );
+    assert_eq!(choices[0], 0);
+}
+
 /// The three things that a sonar can say, in the rates of its model.
 #[test]
 fn sonars_hear_as_modelled() {

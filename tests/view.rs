@@ -759,12 +759,17 @@ fn a_sonar_that_never_changes_is_stuck() {
 
 // ------------------------------------------------------------------------------------ walls
 
+/// The direction of a wall on the side to which a sonar looks that leans forward by a share `along`.
+fn wall_normal(along: f64, sonar: &Sonar) -> [f64; 2] {
+    let across = f64::from(sonar.axis.y.signum());
+    [along, across * (1.0 - along * along).sqrt()]
+}
+
 /// What a sonar hears of a wall on its side, `distance` m from the robot's centre, whose normal leans
 /// forward by a share `along`, m: to the perpendicular's foot, where its axis meets the wall, and to the
 /// nearest point in a cone of 15°.
 fn hears_wall(along: f64, distance: f64, sonar: &Sonar) -> [f64; 3] {
-    let across = f64::from(sonar.axis.y.signum());
-    let normal = [along, across * (1.0 - along * along).sqrt()];
+    let normal = wall_normal(along, sonar);
     let [face, axis] = [sonar.position, sonar.axis].map(|v| [f64::from(v.x), f64::from(v.y)]);
     let dot = |a: [f64; 2]| normal[0] * a[0] + normal[1] * a[1];
     let off = distance - dot(face);
@@ -783,15 +788,19 @@ proptest! {
     #[test]
     fn a_wall_explains_what_is_heard_of_it(
         along in -0.25_f64..0.25, distance in 0.4_f64..2.0, left in any::<bool>(), share in 0.0_f64..=1.0,
+        aside in -0.1_f32..0.1,
     ) {
         let (config, ring) = pioneer_with::<16>();
         let sonars = ring.sonars();
         let is_left = |sonar: &&Sonar| (sonar.axis.y > 0.0) == left;
         let across: Vec<&Sonar> = sonars.iter().filter(is_left).filter(|s| s.axis.x.abs() < 0.26).collect();
         prop_assert_eq!(across.len(), 2);
-        let ranges = [0, 1].map(|i| hears_wall(along, distance, across[i])[0] as f32);
+        // One face is farther aside than the other.
+        let [mut one, other] = [0, 1].map(|i| *across[i]);
+        one.position.y += aside;
+        let ranges = [one, other].map(|sonar| hears_wall(along, distance, &sonar)[0] as f32);
         prop_assume!(ranges.iter().all(|range| *range > 0.1));
-        let wall = Wall::through([across[0], across[1]], ranges, &config).expect("a wall");
+        let wall = Wall::through([&one, &other], ranges, &config).expect("a wall");
         for sonar in sonars.iter().filter(is_left) {
             let [off, axis, nearest] = hears_wall(along, distance, sonar);
             let square_on = off / axis > 0.71 && sonar.axis.x.abs() > 0.26;
@@ -803,6 +812,11 @@ proptest! {
             } else if off / axis < 0.69 || sonar.axis.x.abs() < 0.25 {
                 prop_assert!(!explains(range));
             }
+            // From just behind the wall nothing is heard of it.
+            let mut behind = *sonar;
+            let normal = wall_normal(along, sonar).map(|coordinate| coordinate as f32);
+            behind.position += Vector2::from(normal) * (off as f32 + 0.01);
+            prop_assert!(!wall.explains(0.01, &behind, &config));
         }
         for sonar in sonars.iter().filter(|sonar| !is_left(sonar)) {
             prop_assert!(!wall.explains(distance as f32, sonar, &config));
@@ -813,6 +827,35 @@ proptest! {
         let steep = [ranges[0], ranges[0] + 0.27 * baseline];
         prop_assert!(Wall::through([one, other], steep, &config).is_none());
         prop_assert!(Wall::through([one, one], [ranges[0]; 2], &config).is_none());
+    }
+}
+
+/// Faces 15 cm apart are far enough apart; a sonar 0.26 off straight across is slanted, and one at a cosine
+/// of 0.7 square enough on.
+#[test]
+fn limits_of_a_wall_belong_to_it() {
+    let (config, ring) = pioneer_with::<16>();
+    let looking = |x: f32, axis: [f32; 2]| Sonar {
+        position: [x, 0.2].into(),
+        axis: axis.into(),
+        ..ring.sonars()[0]
+    };
+    let [front, rear, nearer] = [0.15, 0.0, 0.01].map(|x| looking(x, [0.0, 1.0]));
+    let through = |rear| Wall::through([&front, rear], [1.0, 1.0], &config);
+    assert!(through(&nearer).is_none());
+    let wall = through(&rear).expect("a wall");
+    for (axis, range, explained) in [
+        ([0.26, 0.9656], 1.0, true),
+        ([0.259, 0.9659], 1.0, false),
+        ([0.714, 0.7], 1.3, true),
+        ([0.715, 0.699], 1.3, false),
+    ] {
+        let slanted = looking(0.0, axis);
+        assert_eq!(
+            wall.explains(range, &slanted, &config),
+            explained,
+            "{axis:?}"
+        );
     }
 }
 
