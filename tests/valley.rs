@@ -444,6 +444,63 @@ fn six_may_be_more() {
     }
 }
 
+/// People are placed up to 10 m ahead and to either side; beyond it the place is named.
+#[test]
+fn people_are_placed_within_ten_metres() {
+    for [forward, left] in [[10.0, 0.0], [0.0, 10.0], [10.0, -10.0], [0.0, 0.0]] {
+        let person = Person::at(forward, left, 0.2).expect("a person");
+        assert_eq!([person.depth(), person.lateral()], [forward, -left]);
+    }
+    let refused = |forward: f32, left: f32| {
+        let error = Person::at(forward, left, 0.2).expect_err("too far away, or behind");
+        (error.field, error.min, error.max)
+    };
+    assert_eq!(refused(10.01, 0.0), ("depth of a person", 0.0, 10.0));
+    assert_eq!(refused(-0.01, 0.0), ("depth of a person", 0.0, 10.0));
+    for left in [-10.01, 10.01] {
+        let place = "lateral place of a person";
+        assert_eq!(refused(1.0, left), (place, -10.0, 10.0));
+    }
+}
+
+/// Whatever the people, a way has a length, up to twice as far as anybody can be, and is in the angle of
+/// view.
+#[test]
+fn ways_are_ways() {
+    let geometry = kinect(0.25, 0.3);
+    let admits =
+        |sine: f32, length: f32| geometry.admits(&Scene::EMPTY, Heading::new(sine), length);
+    let edge = geometry.view_sine();
+    for sine in [-edge, 0.0, edge] {
+        assert!(admits(sine, 0.1) && admits(sine, 40.0));
+        for length in [0.0, -1.0, 40.1, f32::NAN, f32::INFINITY] {
+            assert!(!admits(sine, length), "{length} m");
+        }
+    }
+    assert!(!admits(edge + 1e-3, 1.0) && !admits(-edge - 1e-3, 1.0));
+}
+
+/// Somebody at the robot's own place is in no direction, and the region beside them is straight ahead.
+#[test]
+fn at_the_robots_place_there_is_no_direction() {
+    let geometry = kinect(0.25, 0.3);
+    let here = scene(&[person([0.0, 0.0, 0.2])]);
+    for index in [0, 1] {
+        let region = geometry.region(&here, index).expect("beside them");
+        assert_eq!((region.sine, region.range), (0.0, 0.0));
+    }
+}
+
+/// Of two valleys as near to the aim as each other the left one is taken.
+#[test]
+fn of_two_alike_the_left_one() {
+    let valleys = kinect(0.25, 0.3).valleys(&scene(&[person([0.0, 3.0, 0.2])]));
+    let angles = [0, 1].map(|index| valleys.get(index).expect("a valley").heading.angle());
+    assert_eq!(angles[0], -angles[1]);
+    let chosen = valleys.by_waypoint(0.0).expect("a valley");
+    assert_eq!(chosen.index, 0);
+}
+
 /// ER-S3-09: the counterexamples of straight paths that hit somebody are not accepted.
 #[test]
 fn known_counterexamples_are_refused() {
