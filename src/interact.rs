@@ -894,7 +894,7 @@ impl Interact {
             return;
         };
         if self.taken_in != Some(people.taken_at) && self.camera(view.now) {
-            self.taken_in = Some(people.taken_at);
+            let before = self.taken_in.replace(people.taken_at);
             let pose = self.pose_at(people.taken_at, &view.pose);
             let mut i = 0;
             while i < TRACKS {
@@ -904,14 +904,21 @@ impl Interact {
                 }
                 i += 1;
             }
-            let mut i = 0;
-            while i < PEOPLE_MAX {
-                if let Some(someone) = &people.people[i] {
-                    self.see(someone, &pose, people.taken_at);
+            // Whose number is known first, so that nobody new is taken for one of them.
+            let known = people.people.map(|someone| {
+                let number = someone.map(|someone| someone.id);
+                self.people().any(|track| Some(track.id) == number)
+            });
+            for turn in [true, false] {
+                for (someone, known) in people.people.iter().zip(known) {
+                    if let Some(someone) = someone
+                        && known == turn
+                    {
+                        self.see(someone, &pose, people.taken_at);
+                    }
                 }
-                i += 1;
             }
-            self.miss(&pose, people.taken_at);
+            self.miss(&pose, people.taken_at, before);
         }
         self.forget(view.now);
     }
@@ -989,8 +996,11 @@ impl Interact {
         near.map(|(i, _)| i).or(empty).unwrap_or(oldest)
     }
 
-    /// Notes who is not in the picture although it shows their place.
-    fn miss(&mut self, pose: &Pose, taken_at: Instant) {
+    /// Notes who is not in the picture although it shows their place. The picture `before` was so long
+    /// ago that nobody looked in between, or it was not.
+    fn miss(&mut self, pose: &Pose, taken_at: Instant, before: Option<Instant>) {
+        let gap = before.and_then(|before| taken_at.since(before));
+        let looked_on = gap.is_some_and(|gap| gap <= milliseconds(self.settings.camera_age_max));
         let mut i = 0;
         while i < TRACKS {
             if let Some(track) = self.tracks[i]
@@ -998,9 +1008,10 @@ impl Interact {
             {
                 let looked_at = self.looks_at(&track, pose);
                 if let Some(track) = &mut self.tracks[i] {
-                    track.missed = match (looked_at, track.missed) {
-                        (false, _) => None,
-                        (true, since) => since.or(Some(taken_at)),
+                    track.missed = match track.missed {
+                        _ if !looked_at => None,
+                        Some(since) if looked_on => Some(since),
+                        _ => Some(taken_at),
                     };
                 }
             }
@@ -1044,7 +1055,8 @@ impl Interact {
         let mut i = 0;
         while i < TRACKS {
             if let Some(track) = &self.tracks[i] {
-                let missed = track.missed.and_then(|since| now.since(since));
+                // Up to the latest picture: since then nobody has looked.
+                let missed = track.missed.and_then(|since| self.taken_in?.since(since));
                 let left = missed.is_some_and(|time| time >= milliseconds(gone));
                 let expired = now
                     .since(track.seen)
@@ -1147,9 +1159,9 @@ impl Interact {
                 let offset = track.position - view.pose.position;
                 let range = math::norm(offset);
                 let [along, aside] = in_direction(offset, view.goal.heading);
-                let reach = view.goal.distance.min(self.settings.notice_distance);
                 let (kept, wanted) = (self.kept(track), self.wanted(track));
-                if along > 0.0 && along < reach + kept {
+                let before_goal = along > 0.0 && along < view.goal.distance + kept;
+                if before_goal && range < self.settings.notice_distance {
                     now.in_path |= aside.abs() < kept;
                     now.near |= aside.abs() < kept && range <= self.settings.stop_distance;
                     now.path_free &= aside.abs() >= wanted;
@@ -1369,7 +1381,7 @@ impl Interact {
                 towards(bearing, self.settings.lead_speed, limit)
             }
             Drive::Backward => Advice {
-                speed: -config.reverse_speed_max.min(self.settings.lead_speed),
+                speed: -config.reverse_speed_max.min(self.settings.lead_speed) * unseen,
                 turn_rate: 0.0,
             },
         }

@@ -1307,6 +1307,10 @@ fn who_is_in_the_way() {
         (&[[3.7, 0.9], [3.8, 1.0]], far, "follow"),
         (&[[3.49, 0.0]], far, "stop"),
         (&[[3.51, 0.0]], far, "announce"),
+        (&[[3.99, 0.0]], far, "announce"),
+        (&[[4.01, 0.0]], far, "follow"),
+        // 4.01 m away, though not as far along the line.
+        (&[[3.98, 0.5]], far, "follow"),
         (&[[2.0, 0.64]], far, "follow"),
         (&[[2.0, 0.61]], far, "stop"),
         (&[[2.0, 0.1], [2.8, -0.1]], far, "stop"),
@@ -1332,6 +1336,7 @@ fn who_is_in_the_way() {
         ([2.0, 0.625], far, "follow"),
         ([3.5, 0.0], far, "stop"),
         ([0.0, 0.5], far, "follow"),
+        ([4.0, 0.0], far, "follow"),
         ([3.625, 0.0], near, "follow"),
     ] {
         let mut stage = at(pose(PLACES[0]), goal);
@@ -1907,6 +1912,43 @@ fn how_long_somebody_is_remembered() {
     missed_for(&seen, &[one(2, [1.5, -0.75], None)]);
 }
 
+/// Pictures that do not come show nothing: after a pause longer than `camera_age_max` the time of looking
+/// begins anew, and until the next picture it stands still.
+//= interact.INV-7
+#[test]
+fn a_camera_that_pauses_lets_nobody_go() {
+    for place in PLACES {
+        let mut stage = at(pose(place), AHEAD);
+        let mut known = |after: u64, people: Option<&[Someone]>| {
+            stage.cycle(after, people);
+            stage.law.people().count()
+        };
+        known(100, Some(&several(&[[3.0, 1.5]])));
+        assert_eq!(known(100, Some(&[])), 1);
+        assert_eq!(known(1_000, None), 1, "nobody has looked");
+        for _ in 0..10 {
+            assert_eq!(known(100, Some(&[])), 1);
+        }
+        assert_eq!(known(100, Some(&[])), 0, "a second of pictures");
+    }
+}
+
+/// Whoever is known keeps their own place in the memory, whether the picture has them before or after
+/// somebody new beside them.
+#[test]
+fn nobody_new_is_taken_for_who_is_there() {
+    let (known, new) = (one(1, [3.0, 1.5], None), one(2, [3.0, 2.0], None));
+    for people in [[known, new], [new, known]] {
+        let mut stage = at(pose(PLACES[0]), AHEAD);
+        stage.cycle(100, Some(&[known]));
+        stage.cycle(100, Some(&people));
+        let mut places: Vec<_> = stage.law.people().map(|p| (p.id, p.position)).collect();
+        places.sort_by_key(|(id, _)| *id);
+        let expected = [(1, [3.0, 1.5].into()), (2, [3.0, 2.0].into())];
+        assert_eq!(places, expected);
+    }
+}
+
 /// Somebody is seen to be gone only where they would be wholly in view: within 35°, tan 35° = 0.7002,
 /// from 0.5 m to 4.5 m from the camera, which sits in the centre of rotation, or 0.25 m before or behind it.
 //= interact.INV-7
@@ -2285,6 +2327,13 @@ fn slower_past_who_is_not_seen() {
         }
     }
     assert_eq!(speeds(pose(PLACES[0]), [0.0, 3.5]), [0.2, 0.2]);
+    // Led backward as well.
+    let mut stage = at(pose(PLACES[0]), AHEAD);
+    let [seen, unseen] = [several(&[[3.2, 1.4]]), vec![]].map(|people| {
+        stage.cycle(100, Some(&people));
+        stage.law.advice(Drive::Backward, &stage.view()).speed
+    });
+    assert!(seen < 0.0 && (unseen - 0.6 * seen).abs() < 1e-6);
 }
 
 /// Six people may be more, and are passed at half the speed; more than six are not judged at all, nor is a

@@ -984,13 +984,14 @@ fn the_law_is_told_what_stands() {
 }
 
 /// A post that one sonar has heard for long, and then another after the robot has turned: `offset` m nearer
-/// or farther, with samples that were taken so late. Returns what both sonars hold in the two ticks after.
+/// or farther, with samples that were taken so late, and has turned by so many times the angle that puts the
+/// post where the first heard it. Returns what both sonars hold in the two ticks after.
 /// Before, the other heard the wall behind.
-fn handed_over(offset: f32, second: bool, taken: u64) -> [[Hazard; 2]; 2] {
+fn handed_over(offset: f32, second: bool, taken: u64, turns: f32) -> [[Hazard; 2]; 2] {
     let (config, ring) = pioneer_with::<16>();
     let heading = |i: usize| ring.sonars()[i].heading.get();
     let [one, other] = [0.17, -0.17].map(|heading| sonar_towards(&ring, heading));
-    let turn = heading(one) - heading(other);
+    let turn = turns * (heading(one) - heading(other));
     let mut memory = Memory::<16>::default();
     let mut tick = |t: u64, heard: [f32; 2], turned: f32| {
         let mut ranges = [5.0; 16];
@@ -1018,19 +1019,22 @@ fn handed_over(offset: f32, second: bool, taken: u64) -> [[Hazard; 2]; 2] {
 //= view.INV-6
 #[test]
 fn what_another_sonar_hears_is_handed_over() {
-    let [first, then] = handed_over(0.0, true, 100);
+    let [first, then] = handed_over(0.0, true, 100, 1.0);
     assert_eq!(first[0].range, 5_000, "let go");
     assert_eq!(first[1].range, 1_000);
     assert_eq!([first[1].class, then[1].class], [Class::Still; 2]);
-    let [first, then] = handed_over(-0.3, true, 100);
+    let [first, then] = handed_over(-0.3, true, 100, 1.0);
     assert_eq!(first[0].range, 5_000, "something nearer hides it");
     assert_eq!(then[1].class, Class::Unknown, "another thing");
-    let [first, _] = handed_over(0.3, true, 100);
+    let [first, _] = handed_over(0.3, true, 100, 1.0);
     assert_eq!(first[0].range, 1_000, "heard behind it");
-    let [first, _] = handed_over(0.0, false, 100);
+    let [first, _] = handed_over(0.0, false, 100, 1.0);
     assert_eq!(first[0].range, 1_000, "not heard");
-    let [first, _] = handed_over(0.0, true, 0);
+    let [first, _] = handed_over(0.0, true, 0, 1.0);
     assert_eq!(first[0].range, 1_000, "heard no later");
+    let [first, then] = handed_over(0.0, true, 100, 2.0);
+    assert_eq!(first[0].range, 1_000, "heard beside it");
+    assert_eq!(then[1].class, Class::Unknown, "another thing");
 }
 
 /// What must hold of every view.
