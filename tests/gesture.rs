@@ -503,6 +503,28 @@ fn weights_are_in_range() {
     }
 }
 
+/// Each of the ten numbers may be three arm lengths, and no more, either way; what is more is named.
+#[test]
+fn features_that_nobody_has_are_refused_by_name() {
+    let names = [&Features::NAMES[..], &Features::ARM_NAMES[..]].concat();
+    let with = |i: usize, value: f32| {
+        let mut numbers = [0.5; Features::COUNT + Features::ARMS];
+        numbers[i] = value;
+        let (six, arms) = numbers.split_at(Features::COUNT);
+        let array = "as many as there are";
+        Features::new(six.try_into().expect(array), arms.try_into().expect(array))
+    };
+    for (i, name) in names.iter().enumerate() {
+        for value in [-Features::LIMIT, Features::LIMIT] {
+            assert!(with(i, value).is_ok(), "{name}");
+        }
+        for value in [-3.001, 3.001, f32::NAN, f32::NEG_INFINITY] {
+            let error = with(i, value).expect_err("beyond");
+            assert_eq!((error.field, error.min, error.max), (*name, -3.0, 3.0));
+        }
+    }
+}
+
 #[test]
 fn bad_weights_and_settings_are_refused_by_name() {
     let mut planes = [[0.0; 7]; 21];
