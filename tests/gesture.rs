@@ -396,7 +396,7 @@ proptest! {
     fn people_are_followed(
         steps in proptest::collection::vec(
             (
-                prop_oneof![8 => Just(33_i64), 1 => 0_i64..400, 1 => Just(-50)],
+                prop_oneof![8 => Just(33_i64), 1 => 0_i64..400, 1 => Just(0), 1 => Just(-50)],
                 proptest::collection::vec((0..4_u64, 0..3_usize), 0..=PEOPLE_MAX),
             ),
             1..30,
@@ -500,7 +500,17 @@ fn weights_are_in_range() {
             }
         }
         Prototypes::new(*model.prototypes().get()).expect("prototypes");
+        let margins = [Model::SVM_MARGIN, Model::NET_MARGIN];
+        assert!(margins.contains(&model.margin()));
+        assert_eq!(model.unlikeness(), Model::UNLIKENESS);
     }
+}
+
+/// A bit that is 0 is not set, and no margin is left.
+#[test]
+fn zero_spells_nothing() {
+    let spelled = sidestep::gesture::spelled_by(&[0.0; 3]).expect("a gesture");
+    assert_eq!((spelled.gesture.code(), spelled.margin), (0, 0.0));
 }
 
 /// Each of the ten numbers may be three arm lengths, and no more, either way; what is more is named.
