@@ -1450,8 +1450,8 @@ pub fn unexplained<const N: usize>(
     left
 }
 
-/// Steers along a line: towards the point of it that is `look_ahead` ahead of the robot, no faster
-/// than `speed`. A robot that looks elsewhere turns first. Total: the turn rate is within ±ω_max and
+/// Steers by an error of heading in radians, no faster than `speed` in m/s: from `error_max` on, the
+/// robot turns before it drives. Total: the turn rate is within ±ω_max and
 /// the speed in [0, `speed`], whatever comes in.
 //= edge.INV-8
 #[must_use]

@@ -28,18 +28,26 @@ fn base() -> Config {
     Config::new(preset::CORRIDOR_BASE).expect("the preset is good")
 }
 
-/// The front ring of a P3-DX.
-fn ring() -> Ring<8> {
-    let mut placements = [Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    }; 8];
+/// The first `N` sonars of a P3-DX.
+fn ring_of<const N: usize>() -> Ring<N> {
+    let mut placements = [CENTRE; N];
     for (placement, at) in placements.iter_mut().zip(BaseParameters::P3DX.sonars) {
         *placement = Placement::from_mm_deg(at.x_mm, at.y_mm, at.heading_deg);
     }
     Ring::new(&placements, &base()).expect("the ring is good")
 }
+
+/// Its front ring.
+fn ring() -> Ring<8> {
+    ring_of()
+}
+
+/// At the robot's centre, looking ahead.
+const CENTRE: Placement = Placement {
+    x: 0.0,
+    y: 0.0,
+    heading: 0.0,
+};
 
 fn point(x: f32, y: f32) -> Vector2<f32> {
     Vector2::new(x, y)
@@ -56,16 +64,22 @@ fn pose(x: f32, y: f32, degrees: f32) -> Pose {
     }
 }
 
+const NOTHING: SonarReading = SonarReading::NoEcho(Length::MAX);
+
 fn echo(range: f32) -> SonarReading {
     Length::metres(range).map_or(SonarReading::Invalid, SonarReading::Echo)
 }
 
 /// A view in which nothing is wrong and nothing near.
-fn quiet_view() -> View<8> {
-    let observation = common::in_order(0, [5.0; 8]);
+fn quiet_view_of<const N: usize>() -> View<N> {
+    let observation = common::in_order(0, [5.0; N]);
     sidestep::view::Memory::default()
-        .update(&observation, point(3.0, 0.0), &ring(), &base())
+        .update(&observation, point(3.0, 0.0), &ring_of(), &base())
         .expect("nothing is wrong")
+}
+
+fn quiet_view() -> View<8> {
+    quiet_view_of()
 }
 
 // ------------------------------------------------------------------------- a world of segments
@@ -251,25 +265,28 @@ proptest! {
         prop_assert!(law::blind_is_not_clear(clear, distance, config.distance_max, heard));
     }
 
+    /// An echo is left where every ray of its cone ends between the sides, 50 mm from either, and only
+    /// there, whatever way the edge leads.
     //= edge.INV-15
     #[test]
     fn sides_are_explained_wherever_they_are_heard(
         (x, y, degrees) in (0.0_f32..3.0, -0.5_f32..0.5, -180.0_f32..180.0),
+        course in -180.0_f32..180.0,
         ranges in prop::array::uniform8(0.05_f32..1.5),
         (right, left) in (-1.0_f32..-0.2, 0.2_f32..1.0),
         half_angle in 0.02_f32..0.5,
     ) {
-        let along = edge([0.0, 0.0], [3.0, 0.0]);
-        let here = pose(x, y, degrees);
+        let stage = Stage { start: [0.5, -1.0], course, side: 1.0 };
         let ring = ring();
         let rest = edge::unexplained(
             &ranges.map(echo),
             &ring,
-            &here,
-            &along,
+            &stage.pose([x, y, degrees]),
+            &stage.line([0.0, 0.0], [3.0, 0.0]),
             &Gap { right, left },
             half_angle,
         );
+        let here = pose(x, y, degrees);
         for (i, sonar) in ring.sonars().iter().enumerate() {
             let face = f64::from(here.to_world(sonar.position).y);
             let axis = f64::from(here.heading.get() + sonar.heading.get());
@@ -280,6 +297,13 @@ proptest! {
                 .collect();
             let is_left = matches!(rest[i], SonarReading::Echo(_));
             prop_assert!(law::left_is_inside(is_left, &places, right.into(), left.into()));
+            // What floats round, and what is between the rays, is less than a tenth of a millimetre.
+            let clear = |margin: f64| {
+                let (right, left) = (f64::from(right) + margin, f64::from(left) - margin);
+                places.iter().all(|y| (right..=left).contains(y))
+            };
+            prop_assert!(is_left || !clear(0.0501));
+            prop_assert!(!is_left || clear(0.0499));
         }
     }
 
@@ -319,7 +343,7 @@ proptest! {
             prop_assert!(!silent || advice.speed == 0.0);
             if driver.wants_scan() {
                 let scan = Scan::new(
-                    Placement { x: 0.0, y: 0.0, heading: 0.0 },
+                    CENTRE,
                     -1.5, 0.1, 8.0, &scene.scan, view.now,
                 );
                 driver.take_scan(&scan.expect("a scan"));
@@ -339,7 +363,7 @@ proptest! {
     #[test]
     fn gap_is_free_of_hits(scene in scene(), point_at in (0.2_f32..1.5, -0.6_f32..0.6)) {
         let scan = Scan::new(
-            Placement { x: 0.0, y: 0.0, heading: 0.0 },
+            CENTRE,
             -1.5, 0.1, 8.0, &scene.scan, Instant(0),
         )
         .expect("a scan");
@@ -372,7 +396,7 @@ proptest! {
             })
             .collect();
         let scan = Scan::new(
-            Placement { x: 0.0, y: 0.0, heading: 0.0 },
+            CENTRE,
             -FRAC_PI_2 as f32, step as f32, 8.0, &ranges, Instant(0),
         )
         .expect("a scan");
@@ -451,7 +475,7 @@ fn any_reading() -> impl Strategy<Value = SonarReading> {
     prop_oneof![
         6 => (0.0_f32..0.7).prop_map(echo),
         2 => common::length().prop_map(SonarReading::Echo),
-        1 => Just(SonarReading::NoEcho(Length::MAX)),
+        1 => Just(NOTHING),
         1 => Just(SonarReading::TooNear),
         1 => Just(SonarReading::Stale),
         1 => Just(SonarReading::Invalid),
@@ -587,15 +611,7 @@ fn no_side_wall_is_an_obstacle() {
 /// Of sixteen sonars the eight in front take part, whichever way the robot looks.
 #[test]
 fn rear_sonars_take_no_part() {
-    let mut placements = [Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    }; 16];
-    for (placement, at) in placements.iter_mut().zip(BaseParameters::P3DX.sonars) {
-        *placement = Placement::from_mm_deg(at.x_mm, at.y_mm, at.heading_deg);
-    }
-    let all = Ring::new(&placements, &base()).expect("the ring is good");
+    let all = ring_of::<16>();
     for degrees in (-180..180).step_by(10) {
         let here = pose(0.0, 0.1, degrees as f32);
         let actual = ActualEdge::new(&here, &edge([0.0, 0.0], [3.0, 0.0])).expect("an edge");
@@ -625,9 +641,7 @@ fn walls_stay_under_their_bound() {
                 let actual = ActualEdge::new(&here, &along).expect("an actual edge");
                 let sonar: [SonarReading; 8] = std::array::from_fn(|i| {
                     let range = listen(i, at, 15.0, &walls);
-                    range.map_or(SonarReading::NoEcho(Length::MAX), |mm| {
-                        echo((mm / 1000.0) as f32)
-                    })
+                    range.map_or(NOTHING, |mm| echo((mm / 1000.0) as f32))
                 });
                 let found = edge::detect(&sonar, &actual.cosines(&ring), actual.distance, &config);
                 let Detection::Clear { greatest: p } = found else {
@@ -702,7 +716,7 @@ fn beside_the_edge_only_walls_count_less() {
     // 300 mm beside the edge, looking towards it or away from it; 400 mm to what the middle sonars hear.
     let found = |degrees: f32| {
         let here = pose(1.0, 0.3, degrees);
-        let mut sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        let mut sonar = [NOTHING; 8];
         (sonar[3], sonar[4]) = (echo(0.4), echo(0.4));
         let inside = edge::unexplained(&sonar, &ring, &here, &along, &sides, 0.2618);
         let actual = ActualEdge::new(&here, &along).expect("an actual edge");
@@ -727,9 +741,7 @@ fn thin_things_dead_ahead_are_missed() {
             let pole = sides([x, distance - 1.0], [x + 2.0, distance + 1.0]);
             let sonar: [SonarReading; 8] = std::array::from_fn(|i| {
                 let range = listen(i, [0.0, distance, 0.0], half_angle, &pole);
-                range.map_or(SonarReading::NoEcho(Length::MAX), |mm| {
-                    echo((mm / 1000.0) as f32)
-                })
+                range.map_or(NOTHING, |mm| echo((mm / 1000.0) as f32))
             });
             let here = pose(0.0, distance as f32 / 1000.0, 0.0);
             let actual = ActualEdge::new(&here, &along).expect("an actual edge");
@@ -819,13 +831,8 @@ fn corridor_scan(free: f64, step: f64) -> Vec<f32> {
 fn measure(free: f64, step_deg: f64) -> FreeWay {
     let step = step_deg.to_radians();
     let ranges = corridor_scan(free, step);
-    let placement = Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    };
     let first = -FRAC_PI_2 as f32;
-    let scan = Scan::new(placement, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
+    let scan = Scan::new(CENTRE, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
     let along = edge([0.0, 0.0], [3.0, 0.0]);
     edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, -0.06), 0.6)
 }
@@ -857,21 +864,9 @@ fn a_way_is_600_mm_wide() {
 fn unseen_is_not_free() {
     let step = 0.5_f64.to_radians();
     let mut ranges = corridor_scan(750.0, step);
-    let placement = Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    };
     let along = edge([0.0, 0.0], [3.0, 0.0]);
     let look = |ranges: &[f32], first: f64| {
-        let scan = Scan::new(
-            placement,
-            first as f32,
-            step as f32,
-            8.0,
-            ranges,
-            Instant(0),
-        );
+        let scan = Scan::new(CENTRE, first as f32, step as f32, 8.0, ranges, Instant(0));
         let scan = scan.expect("a scan");
         edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, -0.1), 0.6)
     };
@@ -958,17 +953,709 @@ fn what_only_a_sonar_hears_counts() {
             cast([0.0, 0.0], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
         })
         .collect();
-    let placement = Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    };
     let first = -FRAC_PI_2 as f32;
-    let scan = Scan::new(placement, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
+    let scan = Scan::new(CENTRE, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
     let along = edge([0.0, 0.0], [3.0, 0.0]);
     let found = edge::free_way(&scan, &pose(0.0, 0.0, 0.0), &along, point(0.5, 0.0), 0.6);
     assert_eq!(found.obstacle, None);
     assert!(!found.passable, "{found:?}");
+}
+
+// ------------------------------------------------------------- every place, and its mirror image
+
+/// Where an edge lies in the world, and whether right is taken for left. What is so on one is so on all.
+#[derive(Clone, Copy, Debug)]
+struct Stage {
+    start: [f32; 2],
+    /// Direction of the edge, degrees.
+    course: f32,
+    /// 1, or −1 for the mirror image.
+    side: f32,
+}
+
+fn stages() -> impl Iterator<Item = Stage> {
+    let places = [
+        ([0.0, 0.0], 0.0),
+        ([-2.5, 1.5], 37.0),
+        ([1.0, -3.0], -128.0),
+    ];
+    places.into_iter().flat_map(|(start, course)| {
+        [1.0, -1.0].map(|side| Stage {
+            start,
+            course,
+            side,
+        })
+    })
+}
+
+impl Stage {
+    /// A point of the edge's frame in the world.
+    fn point(&self, [x, y]: [f32; 2]) -> Vector2<f32> {
+        let (sin, cos) = self.course.to_radians().sin_cos();
+        let y = self.side * y;
+        point(self.start[0], self.start[1]) + point(cos * x - sin * y, sin * x + cos * y)
+    }
+
+    fn line(&self, from: [f32; 2], to: [f32; 2]) -> PlannedEdge {
+        PlannedEdge::new(self.point(from), self.point(to)).expect("an edge")
+    }
+
+    /// A pose from the place in the edge's frame and the direction to the edge, degrees.
+    fn pose(&self, [x, y, degrees]: [f32; 3]) -> Pose {
+        let at = self.point([x, y]);
+        pose(at.x, at.y, self.course + self.side * degrees)
+    }
+
+    /// The sonar that is heard here where `i` is on the other side: the ring is its own mirror image.
+    fn sonar(&self, i: usize) -> usize {
+        if self.side > 0.0 { i } else { 7 - i }
+    }
+
+    /// Where the vector of a sonar ends, in the world: from its face along its axis.
+    fn vector_end(&self, [x, y, degrees]: [f32; 3], sonar: usize, range: f32) -> Vector2<f32> {
+        let at = BaseParameters::P3DX.sonars[sonar];
+        let [face_x, face_y] = [at.x_mm, at.y_mm].map(|mm| f32::from(mm) / 1000.0);
+        let heading = degrees.to_radians();
+        let axis = heading + f32::from(at.heading_deg).to_radians();
+        self.point([
+            x + face_x * heading.cos() - face_y * heading.sin() + range * axis.cos(),
+            y + face_x * heading.sin() + face_y * heading.cos() + range * axis.sin(),
+        ])
+    }
+
+    /// From one side across to the other, as it is in the mirror.
+    fn across(&self, [from, to]: [f32; 2]) -> [f32; 2] {
+        if self.side > 0.0 {
+            [from, to]
+        } else {
+            [-to, -from]
+        }
+    }
+
+    /// The free way past what is heard at a point of the edge's frame, in that frame.
+    fn free_way(&self, look: &Look, here: [f32; 3], heard: [f32; 2]) -> FreeWay {
+        let (look, along) = (look.on(self), self.line([0.0, 0.0], [3.0, 0.0]));
+        let here = self.pose(here);
+        let found = edge::free_way(&look.scan(0), &here, &along, self.point(heard), 0.6);
+        FreeWay {
+            gap: found.gap.map(|gap| {
+                let [right, left] = self.across([gap.right, gap.left]);
+                Gap { right, left }
+            }),
+            obstacle: found.obstacle.map(|seen| edge::Extent {
+                across: self.across(seen.across),
+                ..seen
+            }),
+            ..found
+        }
+    }
+}
+
+/// Directions, radians, and what is seen in them, metres away.
+type Seen<'a> = &'a [(f32, f32)];
+
+/// What a scanner shows, and how it sits on the robot.
+#[derive(Clone, Debug)]
+struct Look {
+    placement: Placement,
+    first: f32,
+    step: f32,
+    reach: f32,
+    ranges: Vec<f32>,
+}
+
+impl Look {
+    /// From the robot's centre, in the directions `first` to `last`, radians: these ranges in some of
+    /// them, and nothing in the others.
+    fn of([first, last]: [f32; 2], step: f32, seen: Seen) -> Self {
+        let beam = |direction: f32| ((direction - first) / step).round() as usize;
+        let mut ranges = vec![f32::INFINITY; beam(last) + 1];
+        for (direction, range) in seen {
+            ranges[beam(*direction)] = *range;
+        }
+        Self {
+            placement: CENTRE,
+            first,
+            step,
+            reach: 8.0,
+            ranges,
+        }
+    }
+
+    /// Half a circle ahead, in quarters of a degree, of a world of segments (mm): what a scanner sees
+    /// that sits like this on a robot at this place, metres and degrees.
+    fn around([x, y, degrees]: [f32; 3], placement: Placement, world: &[Segment]) -> Self {
+        let here = pose(x, y, degrees);
+        let at = here.to_world(point(placement.x, placement.y)) * 1000.0;
+        let course = f64::from(here.heading.get() + placement.heading);
+        let step = 0.25_f64.to_radians();
+        let ranges = (0..721).map(|i| {
+            let angle = course - FRAC_PI_2 + f64::from(i) * step;
+            cast([at.x.into(), at.y.into()], angle, world)
+                .map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
+        });
+        Self {
+            placement,
+            first: -FRAC_PI_2 as f32,
+            step: step as f32,
+            reach: 8.0,
+            ranges: ranges.collect(),
+        }
+    }
+
+    /// The same on a stage, where it may have to be its mirror image.
+    fn on(&self, stage: &Stage) -> Self {
+        let mut look = self.clone();
+        if stage.side < 0.0 {
+            look.placement.y *= -1.0;
+            look.placement.heading *= -1.0;
+            look.first = -(self.first + (self.ranges.len() - 1) as f32 * self.step);
+            look.ranges.reverse();
+        }
+        look
+    }
+
+    fn scan(&self, taken_at: u64) -> Scan<'_> {
+        let Self {
+            placement,
+            first,
+            step,
+            reach,
+            ..
+        } = *self;
+        Scan::new(
+            placement,
+            first,
+            step,
+            reach,
+            &self.ranges,
+            Instant(taken_at),
+        )
+        .expect("a scan")
+    }
+}
+
+fn close(found: f32, expected: f32, within: f32) -> bool {
+    (found - expected).abs() <= within
+}
+
+/// From the right to the left across the edge, metres, if anything is free.
+type Free = Option<[f32; 2]>;
+
+/// The gap is what is expected, or nothing is free.
+#[track_caller]
+fn assert_gap(found: &FreeWay, expected: Free, within: f32, what: &str) {
+    let ok = match (found.gap, expected) {
+        (Some(gap), Some([right, left])) => {
+            close(gap.right, right, within) && close(gap.left, left, within)
+        }
+        (gap, None) => gap.is_none_or(|gap| gap.width() < within),
+        (None, Some(_)) => false,
+    };
+    assert!(ok, "{what}: {found:?}, expected {expected:?}");
+    let is_free = |gap: Gap| law::gap_is_free(gap.right, gap.left, found.passable, 0.6, &[]);
+    assert!(found.gap.is_none_or(is_free), "{what}: {found:?}");
+}
+
+/// What it is, the directions of the first and the last beam, what they see, where something is heard, and
+/// what is free.
+type Case<'a> = (&'a str, [f32; 2], Seen<'a>, [f32; 2], Free);
+
+/// What a scan of a few beams leaves free. A thing that is seen by a beam blocks the rest up to the
+/// beams that pass it: at its range, or square across, whichever is farther from it. What is not the
+/// obstacle hides what is behind it, up to 0.3 m past the obstacle.
+//= edge.INV-13
+#[test]
+fn beams_block_what_they_leave_open() {
+    let (nan, tan, sin) = (f32::NAN, f32::tan, f32::sin);
+    // The obstacle of most: 1 m away, 0.3 rad to the right; the beams beside it pass it.
+    let post = (-0.3, 1.0);
+    let depth = 0.3_f32.cos();
+    let end = depth + 0.3;
+    let at = |bearing: f32, range: f32| [range * bearing.cos(), range * bearing.sin()];
+    let behind = |x: f32| tan(0.2) * x;
+    let table: [Case; 17] = [
+        // 0.2 rad to the left: from the field's right end to the beam at 0.1.
+        (
+            "alone",
+            [-0.3, 0.3],
+            &[(0.2, 1.0)],
+            at(0.2, 1.0),
+            Some([-0.2_f32.cos() * tan(0.3), 0.2_f32.cos() * tan(0.1)]),
+        ),
+        (
+            "beside, no farther than a tenth more than its range",
+            [1.0, 1.7],
+            &[(1.2, 1.0)],
+            at(1.2, 1.0),
+            Some([1.1 * sin(1.3), 1.5]),
+        ),
+        (
+            "across, at its range",
+            [1.2, 1.8],
+            &[(1.4, 1.0)],
+            at(1.4, 1.0),
+            Some([sin(1.5), 1.5]),
+        ),
+        (
+            "across, passed behind the robot",
+            [1.4, 1.8],
+            &[(1.5, 1.0)],
+            at(1.5, 1.0),
+            Some([sin(1.6), 1.5]),
+        ),
+        (
+            "behind the robot, passed before it",
+            [0.0, 1.7],
+            &[(1.6, 1.0)],
+            [0.9, -1.0],
+            Some([0.0, sin(1.5)]),
+        ),
+        (
+            "behind the robot altogether",
+            [0.0, 2.2],
+            &[(2.0, 0.5)],
+            [0.9, -1.0],
+            Some([0.0, 1.5]),
+        ),
+        // Two beams: what is hardly farther goes on, what is much farther is another thing.
+        (
+            "the same thing, a bit farther",
+            [0.2, 0.3],
+            &[(0.2, 1.0), (0.3, 1.05)],
+            at(0.2, 1.0),
+            Some([sin(0.2), 0.2_f32.cos() * tan(0.3)]),
+        ),
+        (
+            "the same thing, a bit nearer",
+            [0.2, 0.3],
+            &[(0.2, 1.0), (0.3, 0.95)],
+            at(0.2, 1.0),
+            Some([sin(0.2), 0.95 * sin(0.3)]),
+        ),
+        (
+            "another thing, farther",
+            [0.2, 0.3],
+            &[(0.2, 1.0), (0.3, 1.2)],
+            at(0.2, 1.0),
+            None,
+        ),
+        // Left of the obstacle another post.
+        (
+            "what a second post hides",
+            [-0.4, 0.6],
+            &[post, (0.2, 0.8)],
+            at(-0.3, 1.0),
+            Some([behind(end), depth * tan(0.6)]),
+        ),
+        (
+            "what the obstacle hides is found out later",
+            [-0.4, 0.6],
+            &[post, (0.2, 0.8)],
+            at(0.2, 0.8),
+            Some([
+                0.8 * 0.2_f32.cos() * tan(0.3),
+                0.8 * 0.2_f32.cos() * tan(0.6),
+            ]),
+        ),
+        (
+            "a beam that is not usable",
+            [-0.4, 0.6],
+            &[post, (0.2, nan)],
+            at(-0.3, 1.0),
+            Some([behind(end), depth * tan(0.6)]),
+        ),
+        (
+            "a range below zero",
+            [-0.4, 0.6],
+            &[post, (0.2, -1.0)],
+            at(-0.3, 1.0),
+            Some([behind(end), depth * tan(0.6)]),
+        ),
+        (
+            "within the way past, 0.3 m",
+            [-0.4, 0.6],
+            &[post, (0.0, 1.25)],
+            at(-0.3, 1.0),
+            Some([1.25 * tan(0.1), depth * tan(0.6)]),
+        ),
+        (
+            "beyond it",
+            [-0.4, 0.6],
+            &[post, (0.0, 1.4)],
+            at(-0.3, 1.0),
+            Some([-depth * tan(0.2), depth * tan(0.6)]),
+        ),
+        (
+            "heard, not seen: 0.2 m to either side",
+            [-0.3, 0.6],
+            &[],
+            [1.0, 0.1],
+            Some([0.3, tan(0.6)]),
+        ),
+        (
+            "heard, not seen, the other way",
+            [-0.6, 0.3],
+            &[],
+            [1.0, 0.05],
+            Some([-tan(0.6), -0.15]),
+        ),
+    ];
+    for stage in stages() {
+        for (what, field, seen, heard, expected) in &table {
+            let look = Look::of(*field, 0.1, seen);
+            let found = stage.free_way(&look, [0.0; 3], *heard);
+            assert_gap(&found, *expected, 1e-3, &format!("{what}, {stage:?}"));
+        }
+    }
+}
+
+/// A beam that is not usable hides what is along it, for a scanner anywhere: straight across it leaves
+/// nothing; looking back, what is between it and the robot's centre.
+//= edge.INV-13
+#[test]
+fn beams_that_are_not_usable_hide_what_is_along_them() {
+    let eighth = std::f32::consts::FRAC_PI_4;
+    let table = [
+        // Straight across, from half a metre to the right of the edge on.
+        (0.0, [0.0, -0.5, 0.0], 2.0 * eighth, None),
+        // 0.2 m ahead of the centre: 0.2 m to the left where it is level with the centre.
+        (0.2, [0.0, 0.0, 0.0], 3.0 * eighth, Some([0.2, 1.5])),
+    ];
+    for stage in stages() {
+        for (x, here, last, expected) in table {
+            let mut look = Look::of([0.0, last], eighth / 20.0, &[(last, f32::NAN)]);
+            look.placement.x = x;
+            let found = stage.free_way(&look, here, [1.0, here[1] - 1.0]);
+            assert_gap(&found, expected, 1e-3, &format!("{last}, {stage:?}"));
+        }
+    }
+}
+
+/// Only the faces of the obstacle are known to end where they are seen to. What stands before it, beside
+/// it or far behind its front is something else, and hides what is behind it.
+//= edge.INV-13
+#[test]
+fn only_the_faces_of_the_obstacle_end() {
+    // A front square across at `depth`, in twentieths of a radian.
+    let front = |depth: f32, from: i8, to: i8| {
+        (from..=to).map(move |k| (0.05 * f32::from(k), depth / (0.05 * f32::from(k)).cos()))
+    };
+    let field = [-0.3, 1.0];
+    let table = [
+        // The front of the obstacle alone: up to the beam that passes it.
+        (
+            front(1.0, -6, 10).collect::<Vec<_>>(),
+            0.55_f32.tan(),
+            1.0_f32.tan(),
+        ),
+        // A pole at 0.15 rad and 0.6 m before a front that ends at 0.1 rad: 0.09 m to the left, which is
+        // level with the front. It hides what is up to 1.3 m ahead.
+        (
+            front(1.0, -6, 2).chain([(0.15, 0.6)]).collect(),
+            1.3 * 0.15_f32.tan(),
+            1.0_f32.tan(),
+        ),
+        // Another front beside it, 0.2 m nearer: hides.
+        (
+            front(1.0, -6, 2).chain(front(0.8, 3, 10)).collect(),
+            1.3 * 0.5_f32.tan(),
+            1.0_f32.tan(),
+        ),
+    ];
+    for stage in stages() {
+        for (k, (seen, right, left)) in table.iter().enumerate() {
+            let look = Look::of(field, 0.05, seen);
+            let found = stage.free_way(&look, [0.0; 3], [1.0, 0.0]);
+            let left = left.min(1.5);
+            assert_gap(
+                &found,
+                Some([*right, left]),
+                1e-3,
+                &format!("{k}, {stage:?}"),
+            );
+        }
+    }
+}
+
+/// The obstacle is what is joined, from the nearest of it within half a safe path of the edge on, and no
+/// more than a metre of it. A wall that it stands against is not its front, unless that is as near the
+/// edge.
+#[test]
+fn the_obstacle_is_what_is_joined() {
+    let walled = |wall: f64, from: f64, right: f64| {
+        vec![
+            [[1000.0 * from, 1000.0 * wall], [1000.0, 1000.0 * wall]],
+            [[1000.0, 1000.0 * right], [1000.0, 1000.0 * wall]],
+        ]
+    };
+    // World, robot, place heard; along and across.
+    let table = [
+        // The wall is not within half a safe path of the edge, or not of what is heard.
+        (
+            walled(0.5, 0.3, 0.1),
+            [0.0; 3],
+            [1.0, 0.25],
+            [1.0, 1.0],
+            [0.1, 0.5],
+        ),
+        (
+            walled(0.28, 0.3, -0.5),
+            [0.0; 3],
+            [1.0, -0.25],
+            [1.0, 1.0],
+            [-0.5, 0.28],
+        ),
+        // It is.
+        (
+            walled(0.28, 0.5, -0.1),
+            [0.0; 3],
+            [1.0, 0.1],
+            [0.5, 1.0],
+            [-0.1, 0.28],
+        ),
+        // A side 2 m long.
+        (
+            vec![[[1000.0, 0.0], [3000.0, 0.0]]],
+            [0.0, -0.4, 0.0],
+            [1.1, 0.0],
+            [1.0, 2.0],
+            [0.0, 0.0],
+        ),
+        // Slanted away, half a right angle: it ends where it is farthest.
+        (
+            vec![[[1000.0, 0.0], [1500.0, 500.0]]],
+            [0.0, 0.0, 12.0],
+            [1.05, 0.0],
+            [1.0, 1.5],
+            [0.0, 0.5],
+        ),
+        // 0.09 m behind each other: one thing. 0.11 m: two.
+        (
+            vec![
+                [[1000.0, -200.0], [1000.0, 0.0]],
+                [[1090.0, 0.0], [1090.0, 200.0]],
+            ],
+            [0.0; 3],
+            [1.0, -0.1],
+            [1.0, 1.09],
+            [-0.2, 0.2],
+        ),
+        (
+            vec![
+                [[1000.0, -200.0], [1000.0, 0.0]],
+                [[1110.0, 0.0], [1110.0, 200.0]],
+            ],
+            [0.0; 3],
+            [1.0, -0.1],
+            [1.0, 1.0],
+            [-0.2, 0.0],
+        ),
+        // Of two that are near, the nearer to what is heard.
+        (
+            vec![
+                [[1000.0, -200.0], [1000.0, -50.0]],
+                [[1000.0, 150.0], [1000.0, 300.0]],
+            ],
+            [0.0; 3],
+            [1.0, 0.04],
+            [1.0, 1.0],
+            [-0.2, -0.05],
+        ),
+    ];
+    // How the scanner sits does not matter: m, m, rad.
+    let placements = [[0.0; 3], [0.12, -0.03, 0.25]];
+    for stage in stages() {
+        for (k, (world, here, heard, along, across)) in table.iter().enumerate() {
+            for [x, y, heading] in placements {
+                let look = Look::around(*here, Placement { x, y, heading }, world);
+                let seen = stage.free_way(&look, *here, *heard).obstacle;
+                let seen = seen.unwrap_or_else(|| panic!("{k} is seen, {stage:?}"));
+                let found = [seen.along, seen.across].concat();
+                for (found, expected) in found.iter().zip([along, across].into_iter().flatten()) {
+                    assert!(close(*found, *expected, 0.015), "{k}: {seen:?}, {stage:?}");
+                }
+            }
+        }
+    }
+}
+
+/// It is seen if it is within 0.2 m of what is heard, and so is a thing that touches the scanner.
+#[test]
+fn what_is_heard_is_seen_within_a_fifth_of_a_metre() {
+    for (range, reach, heard, seen) in [
+        (0.4, 8.0, 0.2, true),
+        (0.4, 8.0, 0.19, false),
+        (0.4, 8.0, 0.59, true),
+        (0.4, 8.0, 0.61, false),
+        (0.0, 8.0, 0.1, true),
+        // From where the scanner reaches to, nothing comes back.
+        (0.6, 0.61, 0.6, true),
+        (0.6, 0.6, 0.6, false),
+    ] {
+        let mut look = Look::of([0.0, 0.5], 0.1, &[(0.0, range)]);
+        look.reach = reach;
+        let along = edge([0.0, 0.0], [3.0, 0.0]);
+        let found = edge::free_way(
+            &look.scan(0),
+            &pose(0.0, 0.0, 0.0),
+            &along,
+            point(heard, 0.0),
+            0.6,
+        );
+        assert_eq!(found.obstacle.is_some(), seen, "{range} {heard}");
+    }
+}
+
+/// The widest of several stretches is the gap, wherever it is among them, and however what lies between
+/// them overlaps.
+//= edge.INV-13
+#[test]
+fn the_widest_stretch_is_the_gap() {
+    // Plates square across at 1 m, from and to, mm; the obstacle is the first.
+    let wall = |from: f64, to: f64, depth: f64| [[depth, from], [depth, to]];
+    let table = [
+        (
+            vec![wall(-1500.0, -200.0, 1000.0), wall(300.0, 1500.0, 1000.0)],
+            [-0.2, 0.3],
+        ),
+        // To the right of all.
+        (
+            vec![wall(-200.0, -100.0, 1000.0), wall(200.0, 1400.0, 1000.0)],
+            [-1.5, -0.2],
+        ),
+        // Narrow, wide, middling: 0.2 m, 0.6 m, 0.4 m.
+        (
+            vec![
+                wall(-400.0, -300.0, 1000.0),
+                wall(-1500.0, -600.0, 1000.0),
+                wall(300.0, 400.0, 1000.0),
+                wall(800.0, 1500.0, 1000.0),
+            ],
+            [-0.3, 0.3],
+        ),
+        // Middling, narrow, wide: 0.4 m, 0.1 m, 0.57 m; what is left of the narrow one hides up to 1.3 m
+        // ahead.
+        (
+            vec![
+                wall(-200.0, -100.0, 1000.0),
+                wall(-1500.0, -600.0, 1000.0),
+                wall(0.0, 100.0, 1000.0),
+                wall(700.0, 1500.0, 1000.0),
+            ],
+            [0.13, 0.7],
+        ),
+        // The same, what lies between the narrow and the wide of two plates that overlap, one nearer.
+        (
+            vec![
+                wall(-200.0, -100.0, 1000.0),
+                wall(-1500.0, -600.0, 1000.0),
+                wall(0.0, 60.0, 1000.0),
+                wall(40.0, 100.0, 1150.0),
+                wall(700.0, 1500.0, 1000.0),
+            ],
+            [0.1 * 1.3 / 1.15, 0.7],
+        ),
+    ];
+    for stage in stages() {
+        for (k, (world, expected)) in table.iter().enumerate() {
+            let look = Look::around([0.0; 3], CENTRE, world);
+            let heard = [1.0, (world[0][0][1] / 1000.0) as f32 + 0.05];
+            let found = stage.free_way(&look, [0.0; 3], heard);
+            assert_gap(&found, Some(*expected), 0.015, &format!("{k}, {stage:?}"));
+        }
+    }
+}
+
+/// A scanner sees as far across as its outermost beams get at the front, wherever it sits and however it
+/// is turned; one that looks all round sees everything, one that misses a beam does not.
+//= edge.INV-13
+#[test]
+fn outermost_beams_bound_the_field() {
+    let degrees = |d: f32| d.to_radians();
+    // Degrees: first and last beam; then where the scanner sits, m, m, degrees; the field at 1 m.
+    let table = [
+        (
+            [-40.0, 52.0],
+            [0.0, 0.0, 0.0],
+            [-degrees(40.0).tan(), degrees(52.0).tan()],
+        ),
+        (
+            [-40.0, 52.0],
+            [0.2, 0.05, 0.0],
+            [
+                0.05 - 0.8 * degrees(40.0).tan(),
+                0.05 + 0.8 * degrees(52.0).tan(),
+            ],
+        ),
+        (
+            [-40.0, 52.0],
+            [0.2, 0.05, -7.0],
+            [
+                0.05 - 0.8 * degrees(47.0).tan(),
+                0.05 + 0.8 * degrees(45.0).tan(),
+            ],
+        ),
+        // Turned to the left, and all but 80° round: those are ahead, to the right.
+        (
+            [-140.0, 140.0],
+            [0.0, 0.0, 90.0],
+            [-degrees(50.0).tan(), 1.5],
+        ),
+        // Nearly round, from straight ahead on.
+        ([0.0, 356.0], [0.0, 0.0, 0.0], [0.0, 1.5]),
+        ([0.0, 358.0], [0.0, 0.0, 0.0], [-1.5, 1.5]),
+    ];
+    for stage in stages() {
+        for ([first, last], [x, y, heading], [right, left]) in table {
+            let mut look = Look::of([degrees(first), degrees(last)], degrees(2.0), &[]);
+            let heading = degrees(heading);
+            look.placement = Placement { x, y, heading };
+            // What is heard is in the way on one side, then on the other.
+            for (heard, gap) in [(left, [right, left - 0.2]), (right, [right + 0.2, left])] {
+                let found = stage.free_way(&look, [0.0; 3], [1.0, heard]);
+                assert_gap(
+                    &found,
+                    Some(gap),
+                    2e-3,
+                    &format!("{first} {last}, {stage:?}"),
+                );
+            }
+        }
+        // From 100° to 143° nothing is to be seen of the way, and nothing is free.
+        let look = Look::of([1.75, 2.5], 0.05, &[]);
+        assert_eq!(stage.free_way(&look, [0.0; 3], [1.0, 0.0]).gap, None);
+    }
+}
+
+/// Scans that go round more than once are refused, and what is given is what is kept.
+#[test]
+fn scans_go_round_once() {
+    let ranges = [1.0; 65];
+    let scan = |beams: usize| Scan::new(CENTRE, 0.0, 0.1, 8.0, &ranges[..beams], Instant(7));
+    // 63 steps of 0.1 are 6.3, a step more than once round are 6.38.
+    let round = scan(64).expect("once round");
+    assert_eq!(
+        (round.taken_at(), round.ranges()),
+        (Instant(7), &ranges[..64])
+    );
+    assert_eq!(scan(65).expect_err("more").field, "angle of scan");
+    assert_eq!(scan(1).expect_err("one").field, "beams");
+}
+
+/// A safe path fits where the gap is as wide, to a tenth of a millimetre that floats round.
+#[test]
+fn a_gap_is_passable_from_the_width_of_a_safe_path_on() {
+    for (right, left, passable) in [
+        (-0.2, 0.4, true),
+        (-0.2, 0.39995, true),
+        (-0.2, 0.3998, false),
+        (0.1, 0.9, true),
+        (0.5, 0.9, false),
+    ] {
+        let gap = Gap { right, left };
+        assert_eq!(gap.is_passable(0.6), passable, "{gap:?}");
+    }
 }
 
 // ------------------------------------------------------------------------------------- the law
@@ -1003,7 +1690,7 @@ fn law_goes_through_its_states() {
         let mut view = quiet_view();
         view.pose = pose(0.0, 0.0, 0.0);
         view.speed = 0.0;
-        view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        view.sonar = [NOTHING; 8];
         assert!(driver.advise(&view).speed > 0.0);
         assert_eq!(driver.state(), State::FollowEdge);
         assert_eq!(Law::<8>::mode(&driver), "follow edge");
@@ -1021,15 +1708,10 @@ fn law_goes_through_its_states() {
         assert_eq!(driver.state(), State::Measure);
         assert_eq!(Law::<8>::mode(&driver), "measure");
         let ranges = corridor_scan(free, 0.5_f64.to_radians());
-        let placement = Placement {
-            x: 0.0,
-            y: 0.0,
-            heading: 0.0,
-        };
         let scan = |taken_at| {
             let first = -FRAC_PI_2 as f32;
             let step = 0.5_f32.to_radians();
-            Scan::new(placement, first, step, 8.0, &ranges, Instant(taken_at)).expect("a scan")
+            Scan::new(CENTRE, first, step, 8.0, &ranges, Instant(taken_at)).expect("a scan")
         };
         // One from before it stood is not looked at.
         driver.take_scan(&scan(599));
@@ -1071,7 +1753,7 @@ fn what_has_left_is_forgotten() {
     let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
     let mut view = quiet_view();
     view.pose = pose(0.0, 0.0, 0.0);
-    view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+    view.sonar = [NOTHING; 8];
     driver.advise(&view);
     view.sonar[4] = echo(0.35);
     for now in [100, 200, 300] {
@@ -1080,13 +1762,8 @@ fn what_has_left_is_forgotten() {
     }
     assert_eq!(driver.state(), State::Measure);
     let ranges = vec![f32::INFINITY; 361];
-    let placement = Placement {
-        x: 0.0,
-        y: 0.0,
-        heading: 0.0,
-    };
     let first = -FRAC_PI_2 as f32;
-    let scan = Scan::new(placement, first, 0.0087, 8.0, &ranges, Instant(350)).expect("a scan");
+    let scan = Scan::new(CENTRE, first, 0.0087, 8.0, &ranges, Instant(350)).expect("a scan");
     // As long as the sonar hears it, it is there, whatever the laser says.
     driver.take_scan(&scan);
     let mut still_there = driver.clone();
@@ -1097,7 +1774,7 @@ fn what_has_left_is_forgotten() {
         states.push(still_there.state());
     }
     assert!(!states.contains(&State::FollowEdge), "{states:?}");
-    view.sonar[4] = SonarReading::NoEcho(Length::MAX);
+    view.sonar[4] = NOTHING;
     for now in [400, 500, 600] {
         view.now = Instant(now);
         driver.advise(&view);
@@ -1116,7 +1793,7 @@ fn who_is_held_up_measures() {
         let mut driver = Edge::<_, 8>::new(base(), paper(), ring(), route).expect("a law");
         let mut view = quiet_view();
         view.pose = pose(0.0, 0.0, 0.0);
-        view.sonar = [SonarReading::NoEcho(Length::MAX); 8];
+        view.sonar = [NOTHING; 8];
         view.sonar[1] = echo(0.5);
         view.guard = guard;
         for now in (0..3000).step_by(100) {
@@ -1182,4 +1859,918 @@ fn sides_of_the_gap_are_explained() {
     let heard = |i: usize| matches!(left[i], SonarReading::Echo(_));
     assert!(heard(3) && heard(4), "dead ahead is inside");
     assert!(![0, 1, 2, 5, 6, 7].into_iter().any(heard), "{left:?}");
+}
+
+// ------------------------------------------------------------------------- the law, tick by tick
+
+/// A law that is shown one view after the other, all in the frame of its first edge.
+#[derive(Clone)]
+struct Drive {
+    stage: Stage,
+    law: Edge<Vec<PlannedEdge>, 8>,
+    view: View<8>,
+}
+
+/// Sonars, and what they hear.
+type Heard<'a> = &'a [(usize, SonarReading)];
+
+impl Drive {
+    /// Along edges from corner to corner, hearing nothing, moving.
+    fn new(stage: Stage, corners: &[[f32; 2]]) -> Self {
+        let route = corners.windows(2).map(|pair| stage.line(pair[0], pair[1]));
+        let law = Edge::new(base(), paper(), ring(), route.collect()).expect("a law");
+        let mut view = quiet_view();
+        view.sonar = [NOTHING; 8];
+        view.speed = 0.1;
+        Self { stage, law, view }
+    }
+
+    /// On an edge of 3 m.
+    fn on(stage: Stage) -> Self {
+        Self::new(stage, &[[0.0, 0.0], [3.0, 0.0]])
+    }
+
+    fn hear(&mut self, sonar: usize, reading: SonarReading) {
+        self.view.sonar[self.stage.sonar(sonar)] = reading;
+    }
+
+    /// What it advises a tenth of a second later: the speed, and the turn as if this were no mirror image.
+    fn tick(&mut self, here: [f32; 3]) -> [f32; 2] {
+        self.view.now.0 += 100;
+        self.view.pose = self.stage.pose(here);
+        let advice = self.law.advise(&self.view);
+        [advice.speed, self.stage.side * advice.turn_rate]
+    }
+
+    fn state(&mut self, here: [f32; 3]) -> State {
+        self.tick(here);
+        self.law.state()
+    }
+
+    /// It advises this speed and a turn to the left by so many degrees, at twice that a second.
+    #[track_caller]
+    fn assert_advises(&mut self, here: [f32; 3], speed: f32, turn: f32) {
+        let found = self.tick(here);
+        let expected = [speed, 2.0 * turn.to_radians()];
+        assert!(
+            close(found[0], expected[0], 1e-3) && close(found[1], expected[1], 4e-3),
+            "at {here:?}: {found:?}, expected {expected:?}; {:?}, {:?}",
+            self.law.state(),
+            self.stage,
+        );
+    }
+
+    /// What it drives along leads in this direction, degrees, and at this speed. Off by 5° it turns back,
+    /// and is slower by as much as that is of `error_max`, radians.
+    #[track_caller]
+    fn assert_leads(&mut self, at: [f32; 2], course: f32, speed: f32, error_max: f32) {
+        let here = |off: f32| [at[0], at[1], course + off];
+        let slower = speed * (1.0 - 5.0_f32.to_radians() / error_max);
+        self.assert_advises(here(5.0), slower, -5.0);
+        self.assert_advises(here(-5.0), slower, 5.0);
+        self.assert_advises(here(0.0), speed, 0.0);
+    }
+
+    /// Stops for what a sonar hears at a range, stands, is given a scan, and hears `then` when it decides:
+    /// the state that this leads to, and what was found.
+    fn look(
+        &mut self,
+        here: [f32; 3],
+        (sonar, range): (usize, f32),
+        look: &Look,
+        then: SonarReading,
+    ) -> (State, FreeWay) {
+        self.hear(sonar, echo(range));
+        assert_eq!(
+            self.state(here),
+            State::Stopped,
+            "{here:?} {:?}",
+            self.stage
+        );
+        self.view.speed = 0.0;
+        assert_eq!(self.state(here), State::Measure);
+        self.law
+            .take_scan(&look.on(&self.stage).scan(self.view.now.0));
+        let Some(Event::Measured(0, found)) = self.events().pop() else {
+            panic!("it has not measured");
+        };
+        assert_eq!(self.state(here), State::FreeWay);
+        self.hear(sonar, then);
+        // On another line than before it does not go on as it went.
+        let moves = self.tick(here) != [0.0, 0.0];
+        assert_eq!(moves, self.law.state() == State::OffEdge);
+        self.hear(sonar, NOTHING);
+        self.view.speed = 0.1;
+        (self.law.state(), found)
+    }
+
+    fn events(&mut self) -> Vec<Event> {
+        std::iter::from_fn(|| self.law.next_event()).collect()
+    }
+}
+
+/// E1, E2 and E4 where something begins or ends: 0.6 m, either side 0.3 m, a threshold that has to be
+/// exceeded, and never more than 10·N2.
+//= edge.INV-3
+#[test]
+fn equations_at_their_limits() {
+    let config = paper();
+    let n1 = |range: f32| edge::nearness(Length::metres(range).expect("a range"), &config);
+    for (range, expected) in [
+        (0.0, 10.0),
+        (0.15, 7.5),
+        (0.42, 3.0),
+        (0.6, 0.0),
+        (0.7, 0.0),
+    ] {
+        assert!(close(n1(range), expected, 1e-5), "{range}");
+    }
+    for (distance, expected) in [(0.0, 1.0), (0.1, 0.8), (0.3, 0.4)] {
+        for distance in [distance, -distance] {
+            let n2 = edge::closeness(distance, &config).expect("within d_max");
+            assert!(close(n2, expected, 1e-6), "{distance}");
+        }
+    }
+    assert_eq!(edge::closeness(0.301, &config), None);
+    for (cosine, expected) in [(1.0, 2.0), (0.5, 1.0), (0.0, 0.0), (-0.5, 0.0), (1.5, 2.0)] {
+        assert!(close(edge::projection(4.0, 0.5, cosine), expected, 1e-6));
+    }
+    let most = edge::projection(12.0, 0.5, 1.0);
+    assert!(most == 5.0 && law::projection_in_range(most, 0.5));
+    let (greatest, sonar) = (3.0, 1);
+    let judge = |threshold| edge::judge(&[1.0, 3.0, 3.0], None, threshold);
+    assert_eq!(judge(3.0), Detection::Clear { greatest });
+    // Of equal ones the first.
+    assert_eq!(judge(2.999), Detection::Obstacle { sonar, greatest });
+    let half = Gap {
+        right: -0.65,
+        left: 0.65,
+    };
+    let wide = Parameters {
+        corridor_width: 1.3,
+        ..PAPER
+    };
+    assert_eq!(EdgeConfig::new(wide).expect("in range").corridor(), half);
+}
+
+/// The actual edge leads from the robot to the edge's end, has no direction within a millimetre of it, and
+/// is heard of by whoever sits ahead of the axle and does not look back.
+#[test]
+fn the_actual_edge_leads_to_the_end() {
+    for stage in stages() {
+        let along = stage.line([0.0, 0.0], [3.0, 0.0]);
+        // 1 m before the end, 0.25 m beside: 14.04° to the right of the edge.
+        let actual = ActualEdge::new(&stage.pose([2.0, 0.25, 20.0]), &along).expect("an edge");
+        let turn = -(0.25_f32.atan2(1.0).to_degrees() + 20.0);
+        let found = stage.side * actual.heading_error().get().to_degrees();
+        assert!(close(found, turn, 1e-3), "{found}");
+        assert!(close(actual.length, 1.0625_f32.sqrt(), 1e-5));
+        assert!(close(stage.side * actual.distance, 0.25, 1e-5));
+        let cosines = actual.cosines(&ring());
+        for (i, at) in BaseParameters::P3DX.sonars.iter().take(8).enumerate() {
+            let expected = (f32::from(at.heading_deg) - turn).to_radians().cos();
+            assert!(close(cosines[stage.sonar(i)], expected, 1e-4), "{i}");
+        }
+    }
+    let along = edge([-1.0, 0.0], [0.001, 0.0]);
+    assert!(ActualEdge::new(&pose(0.0, 0.0, 0.0), &along).is_some());
+    assert!(ActualEdge::new(&pose(0.0002, 0.0, 0.0), &along).is_none());
+    // Sonars that sit or look elsewhere: x and y, mm, and degrees; whether they take part.
+    let others = [
+        (0, 150, 60, true),
+        (-10, 150, 60, false),
+        (100, 100, 100, false),
+    ];
+    let mut placements = [CENTRE; 11];
+    let front = BaseParameters::P3DX.sonars.iter().take(8);
+    let all = front.map(|at| (at.x_mm, at.y_mm, at.heading_deg));
+    let all = all.chain(others.iter().map(|(x, y, degrees, _)| (*x, *y, *degrees)));
+    for (placement, (x, y, degrees)) in placements.iter_mut().zip(all) {
+        *placement = Placement::from_mm_deg(x, y, degrees);
+    }
+    let ring = Ring::new(&placements, &base()).expect("the ring is good");
+    let actual = ActualEdge::new(&pose(0.0, 0.0, 0.0), &edge([0.0, 0.0], [1.0, 1.0]));
+    let cosines = actual.expect("an edge").cosines(&ring);
+    for ((_, _, degrees, takes_part), cosine) in others.iter().zip(&cosines[8..]) {
+        let expected = (f32::from(*degrees) - 45.0).to_radians().cos();
+        assert!(close(
+            *cosine,
+            if *takes_part { expected } else { 0.0 },
+            1e-5
+        ));
+    }
+}
+
+/// A planned edge keeps what it was made of.
+#[test]
+fn an_edge_has_two_ends() {
+    let along = edge([-1.0, 0.5], [2.0, 4.5]);
+    assert_eq!(
+        (along.start(), along.end()),
+        (point(-1.0, 0.5), point(2.0, 4.5))
+    );
+    assert!(close(along.length(), 5.0, 1e-5));
+    assert!((along.direction() - point(0.6, 0.8)).amax() < 1e-6);
+}
+
+/// M3 as the book's table has it: who moves, what is so, and what follows.
+#[test]
+fn machine_follows_its_table() {
+    use State::{Blocked, Done, FollowEdge, FreeWay, Measure, OffEdge, Rejoin, Stopped, SubRoute};
+    let nothing = Situation {
+        obstacle: false,
+        standing: false,
+        finding: None,
+        past: false,
+        following: false,
+        on_edge: false,
+        at_end: false,
+    };
+    let found = |finding| Situation {
+        finding: Some(finding),
+        ..nothing
+    };
+    let standing = Situation {
+        standing: true,
+        ..nothing
+    };
+    let following = Situation {
+        following: true,
+        ..nothing
+    };
+    let on_edge = Situation {
+        on_edge: true,
+        ..following
+    };
+    let past = Situation {
+        past: true,
+        ..nothing
+    };
+    let at_end = Situation {
+        at_end: true,
+        ..on_edge
+    };
+    let table: [(&[State], Situation, State); 13] = [
+        (&[Stopped], standing, Measure),
+        (&[Measure], found(Finding::Closed), FreeWay),
+        (&[FreeWay], found(Finding::Passable), SubRoute),
+        (&[FreeWay], found(Finding::Closed), Blocked),
+        (&[FreeWay], found(Finding::Gone), OffEdge),
+        (&[FreeWay], nothing, Measure),
+        (&[SubRoute], past, Rejoin),
+        (&[FollowEdge, Rejoin, OffEdge], at_end, Done),
+        (&[FollowEdge, Rejoin, OffEdge], on_edge, FollowEdge),
+        (&[FollowEdge, Rejoin, OffEdge], nothing, OffEdge),
+        (&[FollowEdge], following, FollowEdge),
+        (&[Rejoin], following, Rejoin),
+        (&[OffEdge], following, OffEdge),
+    ];
+    for (states, situation, next) in table {
+        for state in states {
+            assert_eq!(edge::next_state(*state, &situation), next, "{state:?}");
+            // What is on the way goes first for whoever moves, and is nothing to whoever rests.
+            let obstacle = Situation {
+                obstacle: true,
+                ..situation
+            };
+            let expected = if state.at_rest() { next } else { Stopped };
+            assert_eq!(edge::next_state(*state, &obstacle), expected, "{state:?}");
+        }
+    }
+    for state in [Stopped, Measure, SubRoute, Blocked, Done] {
+        assert_eq!(edge::next_state(state, &following), state);
+    }
+    for state in [Blocked, Done] {
+        for situation in [found(Finding::Passable), on_edge, past, standing] {
+            assert_eq!(edge::next_state(state, &situation), state);
+        }
+    }
+}
+
+/// Steering: twice the error a second up to a quarter turn, the speed falls with the error, and whatever
+/// is no number is no advice.
+//= edge.INV-8
+#[test]
+fn steering_is_proportional() {
+    let config = base();
+    for (error, speed, expected) in [
+        (0.0, 0.2, [0.2, 0.0]),
+        (0.1, 0.2, [0.16, 0.2]),
+        (-0.3, 0.2, [0.08, -0.6]),
+        (0.5, 0.2, [0.0, 1.0]),
+        (-2.0, 0.2, [0.0, -FRAC_PI_2 as f32]),
+        (0.25, 5.0, [0.2, 0.5]),
+        (0.25, -1.0, [0.0, 0.5]),
+        (0.1, f32::NAN, [0.0, 0.0]),
+        (f32::NAN, 0.2, [0.0, 0.0]),
+        (f32::INFINITY, 0.2, [0.0, 0.0]),
+    ] {
+        let advice = edge::steer(error, speed, 0.5, &config);
+        assert!(
+            close(advice.speed, expected[0], 1e-6) && close(advice.turn_rate, expected[1], 1e-6),
+            "{error} {speed}: {advice:?}"
+        );
+        let (speed_max, turn_rate_max) = (config.speed_max, config.turn_rate_max);
+        assert!(law::advice_in_range(
+            advice.speed,
+            advice.turn_rate,
+            speed_max,
+            turn_rate_max
+        ));
+    }
+}
+
+/// On the edge, and while it rejoins it, the robot aims at the point 0.6 m ahead of where it is along it, or
+/// at the end; slower where it looks elsewhere, and towards the end.
+#[test]
+fn the_edge_is_followed() {
+    for stage in stages() {
+        let mut drive = Drive::on(stage);
+        // 0.28 m beside it is too far to follow it, and near enough to rejoin it.
+        let aim = |y: f32, ahead: f32| -y.atan2(ahead).to_degrees();
+        drive.assert_leads([1.0, 0.28], aim(0.28, 0.6), 0.1, PAPER.heading_error_max);
+        assert_eq!(drive.law.state(), State::Rejoin);
+        // Nor is it followed before the robot looks along it.
+        drive.assert_advises(
+            [1.0, 0.1, aim(0.1, 0.6) + 10.0],
+            0.1 * (1.0 - 10.0 / 50.0),
+            -10.0,
+        );
+        assert_eq!(drive.law.state(), State::Rejoin);
+        drive.assert_advises(
+            [1.0, 0.1, aim(0.1, 0.6) + 8.0],
+            0.2 * (1.0 - 8.0 / 50.0),
+            -8.0,
+        );
+        assert_eq!(drive.law.state(), State::FollowEdge);
+        drive.assert_leads([1.0, 0.1], aim(0.1, 0.6), 0.2, PAPER.heading_error_max);
+        drive.assert_leads([1.5, -0.2], aim(-0.2, 0.6), 0.2, PAPER.heading_error_max);
+        drive.assert_leads([2.6, -0.1], aim(-0.1, 0.4), 0.2, PAPER.heading_error_max);
+        // 0.12 m before the end.
+        drive.assert_leads([2.88, 0.01], aim(0.01, 0.12), 0.15, PAPER.heading_error_max);
+        assert_eq!(drive.law.state(), State::FollowEdge);
+        assert_eq!(drive.state([2.91, 0.0, 0.0]), State::Done);
+        assert_eq!(drive.events(), [Event::Covered(0)]);
+    }
+}
+
+/// An edge ends 0.1 m before its end, and as much more as the robot is beside it, up to 0.3 m; then the next
+/// one is followed, from the first place on.
+#[test]
+fn edges_end_near_their_end() {
+    for stage in stages() {
+        for (x, y, ended) in [
+            (2.88, 0.0, false),
+            (2.92, 0.0, true),
+            (2.73, -0.15, false),
+            (2.77, -0.15, true),
+            (2.62, 0.29, true),
+            (2.62, 0.31, false),
+            (3.5, 0.31, false),
+        ] {
+            let what = format!("{x} {y} {stage:?}");
+            let mut last = Drive::on(stage);
+            let state = last.state([x, y, 0.0]);
+            assert_eq!(state == State::Done, ended, "{what}");
+            let mut drive = Drive::new(stage, &[[0.0, 0.0], [3.0, 0.0], [3.0, 2.0]]);
+            drive.tick([x, y, 0.0]);
+            assert_eq!(drive.law.current(), usize::from(ended), "{what}");
+            let events: &[Event] = if ended { &[Event::Covered(0)] } else { &[] };
+            assert_eq!(drive.events(), events, "{what}");
+        }
+        // Round the corner: the next edge is a quarter turn on, so the robot turns on the spot.
+        let mut drive = Drive::new(stage, &[[0.0, 0.0], [3.0, 0.0], [3.0, 2.0], [1.0, 2.0]]);
+        assert_eq!(drive.state([2.8, 0.0, 0.0]), State::FollowEdge);
+        assert_eq!(drive.state([2.95, 0.0, 0.0]), State::OffEdge);
+        let aim = 0.05_f32.atan2(0.6).to_degrees();
+        drive.assert_advises([2.95, 0.0, 60.0], 0.0, 30.0 - aim);
+        assert_eq!(drive.state([2.95, 0.0, 85.0]), State::FollowEdge);
+        drive.assert_leads([2.95, 0.0], 90.0 - aim, 0.2, PAPER.heading_error_max);
+        assert_eq!((drive.law.current(), drive.law.route().len()), (1, 3));
+        assert_eq!(drive.state([3.0, 1.95, 90.0]), State::OffEdge);
+        assert_eq!(drive.law.current(), 2);
+        assert_eq!(drive.state([3.0, 1.95, 178.0]), State::FollowEdge);
+        assert_eq!(drive.state([1.05, 2.0, 180.0]), State::Done);
+        let covered = [0, 1, 2].map(Event::Covered);
+        assert_eq!(drive.events(), covered);
+        // Another route begins with its first edge, from where it is.
+        let route = vec![stage.line([1.0, 2.0], [-1.0, 2.0])];
+        drive.law.reroute(route.clone()).expect("a route");
+        assert_eq!((drive.law.current(), drive.law.route()), (0, &route[..]));
+        assert_eq!(drive.state([1.05, 2.0, 180.0]), State::FollowEdge);
+        let holed = vec![route[0], route[0]];
+        let error = drive.law.reroute(holed).expect_err("a hole");
+        assert!(close(error.value, 2.0, 1e-5), "{error}");
+    }
+}
+
+/// Of what has happened the last eight are kept, in order.
+#[test]
+fn the_last_eight_events_are_kept() {
+    let corners: Vec<[f32; 2]> = (0..=10_u8).map(|k| [f32::from(k), 0.0]).collect();
+    let stage = stages().next().expect("a stage");
+    let mut drive = Drive::new(stage, &corners);
+    for corner in &corners[1..] {
+        drive.tick([corner[0], 0.0, 0.0]);
+    }
+    assert_eq!(drive.law.state(), State::Done);
+    assert_eq!(drive.events(), [2, 3, 4, 5, 6, 7, 8, 9].map(Event::Covered));
+    assert_eq!(drive.law.next_event(), None);
+}
+
+/// Off the edge the robot goes back along a leg of its own: half a right angle on, but not before the
+/// edge's beginning or beyond its end. It aims 0.3 m ahead on it, and looks along it before it goes.
+#[test]
+fn the_way_back_is_half_a_right_angle_on() {
+    let course =
+        |from: [f32; 2], to: [f32; 2]| (to[1] - from[1]).atan2(to[0] - from[0]).to_degrees();
+    for stage in stages() {
+        for (from, to) in [
+            ([1.0, 0.5], 1.5),
+            ([1.3, -0.4], 1.7),
+            ([-0.8, 0.4], 0.0),
+            ([-0.2, 0.5], 0.3),
+            ([2.9, 0.5], 3.0),
+            ([2.4, -0.5], 2.9),
+        ] {
+            let mut drive = Drive::on(stage);
+            let leads = course(from, [to, 0.0]);
+            // Blind until it has a leg.
+            assert_eq!(drive.tick([from[0], from[1], leads]), [0.0, 0.0]);
+            assert_eq!(drive.law.state(), State::OffEdge);
+            drive.assert_leads(from, leads, 0.1, edge::TURNED);
+            drive.assert_advises([from[0], from[1], leads + 20.0], 0.0, -20.0);
+        }
+        // The leg from (1, 0.5) to (1.5, 0) stays the way, 0.0707 m beside it too.
+        let mut drive = Drive::on(stage);
+        let root = std::f32::consts::FRAC_1_SQRT_2;
+        drive.tick([1.0, 0.5, -45.0]);
+        drive.tick([1.0, 0.5, -45.0]);
+        let ahead = 0.1 * root + 0.3;
+        drive.assert_leads(
+            [1.1, 0.5],
+            course([1.1, 0.5], [1.0 + ahead * root, 0.5 - ahead * root]),
+            0.1,
+            edge::TURNED,
+        );
+        // 0.28 m beside it, still.
+        let beside = [1.0 + 0.28 * root, 0.5 + 0.28 * root];
+        drive.assert_advises(
+            [beside[0], beside[1], -60.0],
+            0.0,
+            course(beside, [1.0 + 0.3 * root, 0.5 - 0.3 * root]) + 60.0,
+        );
+        // 0.35 m beside it there is a new one.
+        drive.assert_leads([1.5, 0.5], -45.0, 0.1, edge::TURNED);
+        drive.assert_leads([1.6, 0.4], -45.0, 0.1, edge::TURNED);
+        // Near the edge it is left for the edge, which is aimed at 0.6 m ahead.
+        drive.assert_advises(
+            [1.7, 0.26, -45.0],
+            0.0,
+            45.0 + course([0.0, 0.26], [0.6, 0.0]),
+        );
+        assert_eq!(drive.law.state(), State::OffEdge);
+        // From beside the beginning the leg is flat: level with its end the robot is still too far off.
+        let mut drive = Drive::on(stage);
+        drive.tick([-2.0, 0.4, 0.0]);
+        drive.tick([-2.0, 0.4, 0.0]);
+        let length = 0.4_f32.hypot(2.0);
+        let (along, left) = ([2.0 / length, -0.4 / length], [0.4 / length, 2.0 / length]);
+        let place = |before: f32| [0, 1].map(|k| 0.29 * left[k] - before * along[k]);
+        let [early, late] = [place(0.05), place(0.02)];
+        drive.assert_advises(
+            [early[0], early[1], -80.0],
+            0.0,
+            course(early, [0.0, 0.0]) + 80.0,
+        );
+        drive.assert_leads(late, -45.0, 0.1, edge::TURNED);
+    }
+}
+
+/// When the robot goes back to following: near the edge, turned along it, and hearing every sonar.
+#[test]
+fn the_edge_is_followed_from_near_it_on() {
+    for stage in stages() {
+        let off = |here: [f32; 3]| {
+            let mut drive = Drive::on(stage);
+            assert_eq!(drive.state(here), State::OffEdge);
+            drive
+        };
+        // It looks 60° aside, or is 0.4 m beside.
+        for beginning in [[1.0, 0.0, 60.0], [1.0, 0.4, 0.0]] {
+            let drive = off(beginning);
+            for (here, reading, state) in [
+                ([1.0, 0.0, 0.0], NOTHING, State::FollowEdge),
+                ([1.0, 0.26, -23.4], NOTHING, State::FollowEdge),
+                ([1.0, 0.28, -25.0], NOTHING, State::OffEdge),
+                ([1.0, 0.0, 8.0], NOTHING, State::FollowEdge),
+                ([1.0, 0.0, 10.0], NOTHING, State::OffEdge),
+                ([1.0, 0.0, 0.0], SonarReading::Stale, State::OffEdge),
+                ([1.0, 0.0, 0.0], SonarReading::Invalid, State::OffEdge),
+            ] {
+                let mut drive = drive.clone();
+                drive.hear(2, reading);
+                assert_eq!(drive.state(here), state, "{here:?} {stage:?}");
+                // Where a sonar is not heard not even a turn is advised.
+                assert_eq!(drive.tick(here) != [0.0, 0.0], reading == NOTHING);
+            }
+        }
+        // Following is left for being off the edge where the robot is too far off, looks too far aside,
+        // or does not hear.
+        for (here, reading, state) in [
+            ([1.0, 0.29, 0.0], NOTHING, State::FollowEdge),
+            ([1.0, 0.31, 0.0], NOTHING, State::OffEdge),
+            ([1.0, 0.0, 49.0], NOTHING, State::FollowEdge),
+            ([1.0, 0.0, 51.0], NOTHING, State::OffEdge),
+            ([1.0, 0.0, 0.0], SonarReading::Stale, State::OffEdge),
+        ] {
+            let mut drive = Drive::on(stage);
+            assert_eq!(drive.state([1.0, 0.0, 0.0]), State::FollowEdge);
+            drive.hear(2, reading);
+            assert_eq!(drive.state(here), state, "{here:?} {stage:?}");
+        }
+    }
+}
+
+/// What is detected is handed on as the place where the sonar's vector ends, from the face along the axis;
+/// unless the robot looks more than 50° aside.
+#[test]
+fn the_biggest_valued_point_is_where_the_vector_ends() {
+    for stage in stages() {
+        for (degrees, sonar, reading, range) in [
+            (0.0, 4, echo(0.35), 0.35),
+            (25.0, 5, echo(0.3), 0.3),
+            (45.0, 6, echo(0.2), 0.2),
+            (-45.0, 1, echo(0.2), 0.2),
+            (10.0, 3, SonarReading::TooNear, 0.0),
+        ] {
+            let mut drive = Drive::on(stage);
+            drive.tick([1.0, 0.0, 0.0]);
+            drive.hear(sonar, reading);
+            drive.hear(0, echo(0.5));
+            assert_eq!(
+                drive.state([1.0, 0.0, degrees]),
+                State::Stopped,
+                "{degrees} {stage:?}"
+            );
+            let end = stage.vector_end([1.0, 0.0, degrees], sonar, range);
+            let events = drive.events();
+            let [Event::Detected(0, found)] = events[..] else {
+                panic!("{events:?}");
+            };
+            assert!((found - end).amax() < 1e-4, "{found} {end} {stage:?}");
+        }
+        let mut drive = Drive::on(stage);
+        drive.tick([1.0, 0.0, 0.0]);
+        drive.hear(6, echo(0.2));
+        assert_eq!(drive.state([1.0, 0.0, 55.0]), State::OffEdge);
+    }
+}
+
+/// A corridor from 0.6 m to the right of its edge to `left`, m, and a box in it 1.5 m to 1.7 m along it,
+/// from one place to the other across.
+fn corridor_with_a_box(left: f64, [from, to]: [f64; 2]) -> Vec<Segment> {
+    let wall = |y: f64| [[-1000.0, 1000.0 * y], [5000.0, 1000.0 * y]];
+    let mut world = sides([1500.0, 1000.0 * from], [1700.0, 1000.0 * to]);
+    world.extend([wall(-0.6), wall(left)]);
+    world
+}
+
+/// A robot about to go round, and the middle of the gap, m from the edge.
+fn on_sub_route(
+    stage: Stage,
+    length: f32,
+    here: [f32; 3],
+    heard: (usize, f32),
+    world: &[Segment],
+) -> (Drive, f32) {
+    let mut drive = Drive::new(stage, &[[0.0, 0.0], [length, 0.0]]);
+    let look = Look::around(here, CENTRE, world);
+    let (state, found) = drive.look(here, heard, &look, echo(heard.1));
+    assert!(law::finding_decides(
+        found.passable,
+        state == State::SubRoute
+    ));
+    assert_eq!(state, State::SubRoute, "{found:?}");
+    let gap = found.gap.expect("a gap");
+    (drive, stage.side * gap.middle())
+}
+
+/// The way round: to the middle of the gap, 0.3 m before the front, or where the robot is if that is farther;
+/// along the middle to 0.3 m behind what is seen, or to the end of the edge. Each leg is left 0.03 m before
+/// its end, and the robot slows down for it.
+//= edge.INV-12
+#[test]
+fn the_sub_route_leads_through_the_gap() {
+    // The gap is 0.1 to 0.8. Without the box there are the two walls.
+    let world = corridor_with_a_box(0.8, [-0.6, 0.1]);
+    let empty = &world[4..];
+    let from = [1.0, 0.0, 0.0];
+    let table = [
+        // Length of the edge, place, what is heard, world; middle; along the edge: where the leg to the
+        // middle ends, and the one along it.
+        (3.0, from, (4, 0.35), &world[..], 0.45, 1.2, 1.8),
+        (1.65, from, (4, 0.35), &world[..], 0.45, 1.2, 1.65),
+        (3.0, [1.3, 0.0, 0.0], (4, 0.05), &world[..], 0.45, 1.3, 1.8),
+        // Only heard, 0.51 m ahead and 0.088 m to the right: the gap begins 0.2 m from that.
+        (3.0, from, (4, 0.35), empty, 0.456, 1.210_68, 1.810_68),
+        (3.0, [1.0, -0.1, 0.0], (4, 0.35), &world[..], 0.45, 1.2, 1.8),
+    ];
+    for stage in stages() {
+        for (length, here, heard, world, middle, enter, leave) in table {
+            let (mut drive, lane) = on_sub_route(stage, length, here, heard, world);
+            let what = format!("{length} {here:?} {stage:?}");
+            assert!(close(lane, middle, 0.004), "{what}: {lane}");
+            let [x, y, _] = here;
+            let (dx, dy) = (enter - x, lane - y);
+            let whole = dx.hypot(dy);
+            let before = |left: f32| [enter - left * dx / whole, lane - left * dy / whole];
+            let course = dy.atan2(dx).to_degrees();
+            drive.assert_leads([x, y], course, 0.1, edge::TURNED);
+            drive.assert_leads(before(0.2), course, 0.1, edge::TURNED);
+            drive.assert_leads(before(0.05), course, 0.08, edge::TURNED);
+            // It is now the other leg's turn, which is aimed at 0.3 m ahead.
+            let [_, short] = before(0.02);
+            let aim = (lane - short).atan2(0.3).to_degrees();
+            drive.assert_leads(before(0.02), aim, 0.1, edge::TURNED);
+            let aim = (-0.06_f32).atan2(0.3).to_degrees();
+            drive.assert_leads([enter + 0.1, lane + 0.06], aim, 0.1, edge::TURNED);
+            drive.assert_advises([leave - 0.04, lane, 0.0], 0.07, 0.0);
+            assert_eq!(drive.law.state(), State::SubRoute, "{what}");
+            assert_eq!(drive.tick([leave - 0.02, lane, 0.0]), [0.0, 0.0]);
+            assert_eq!(drive.law.state(), State::Rejoin, "{what}");
+            assert_eq!(drive.state([leave, lane, 0.0]), State::OffEdge, "{what}");
+        }
+        // An edge that ends before the front: what is beyond its end is not driven.
+        let (mut drive, lane) = on_sub_route(stage, 1.15, from, (4, 0.35), &world);
+        assert_eq!(drive.state([1.19, lane - 0.05, 66.0]), State::SubRoute);
+        assert_eq!(drive.state([1.19, lane - 0.02, 66.0]), State::Rejoin);
+        // The robot is 0.04 m from the middle: too little for a leg. The box's side is seen to 1.7 m.
+        let world = corridor_with_a_box(0.56, [-0.6, -0.06]);
+        let (mut drive, lane) = on_sub_route(stage, 3.0, [1.2, 0.21, 0.0], (4, 0.3), &world);
+        assert!(close(lane, 0.25, 0.004), "{lane} {stage:?}");
+        let aim = (lane - 0.21).atan2(0.3).to_degrees();
+        drive.assert_leads([1.2, 0.21], aim, 0.1, edge::TURNED);
+        assert_eq!(drive.state([1.95, lane, 0.0]), State::SubRoute);
+        assert_eq!(drive.state([1.98, lane, 0.0]), State::Rejoin);
+    }
+}
+
+/// The leg past an obstacle goes on for 0.3 m beyond the last place where a sonar that looks across hears
+/// it, within 0.1 m of the gap's side that is the obstacle's.
+#[test]
+fn the_way_past_is_as_long_as_the_obstacle_is_heard() {
+    // The box is left of the edge's middle, and right of the gap's, which is 0.3 to 1.
+    let world = corridor_with_a_box(1.0, [-0.1, 0.3]);
+    for stage in stages() {
+        // The faces across are 0.136 m from the centre; so the side is 0.214 m from the right one.
+        for (sonar, range, x, end) in [
+            (7, 0.214, 1.6, 1.9),
+            (7, 0.13, 1.6, 1.9),
+            (7, 0.3, 1.6, 1.9),
+            (7, 0.1, 1.6, 1.8),
+            (7, 0.33, 1.6, 1.8),
+            // The wall on the other side, which is as far.
+            (0, 0.214, 1.6, 1.8),
+            // The side as well, but not heard across.
+            (6, 0.3, 1.6, 1.8),
+            // Earlier it is no news.
+            (7, 0.214, 1.3, 1.8),
+        ] {
+            let here = [1.0, 0.0, 0.0];
+            let (mut drive, lane) = on_sub_route(stage, 3.0, here, (4, 0.35), &world);
+            assert_eq!(drive.state([1.22, lane, 0.0]), State::SubRoute);
+            drive.hear(sonar, echo(range));
+            let what = format!("{sonar} {range} {stage:?}");
+            assert_eq!(drive.state([x, lane, 0.0]), State::SubRoute, "{what}");
+            drive.hear(sonar, NOTHING);
+            assert_eq!(
+                drive.state([end - 0.05, lane, 0.0]),
+                State::SubRoute,
+                "{what}"
+            );
+            drive.assert_advises([end - 0.05, lane, 0.0], 0.08, 0.0);
+            assert_eq!(
+                drive.state([end - 0.02, lane, 0.0]),
+                State::Rejoin,
+                "{what}"
+            );
+        }
+        // A wide box on the left, up to the wall, of which the side is seen to 1.7 m.
+        let world = corridor_with_a_box(2.4, [0.2, 2.4]);
+        let (mut drive, lane) = on_sub_route(stage, 3.0, [1.0, 0.0, 0.0], (3, 0.35), &world);
+        assert_eq!(drive.state([1.22, lane, 0.0]), State::SubRoute);
+        // Its side is 0.4 m from the middle of the gap.
+        drive.hear(0, echo(0.4 - 0.136));
+        assert_eq!(drive.state([1.8, lane, 0.0]), State::SubRoute);
+        drive.hear(0, NOTHING);
+        assert_eq!(drive.state([2.05, lane, 0.0]), State::SubRoute);
+        assert_eq!(drive.state([2.08, lane, 0.0]), State::Rejoin);
+    }
+}
+
+/// On the way round the sides of the gap are known, and stop nobody; what is inside it does, and so does a
+/// leg that is 0.3 m off.
+#[test]
+fn the_gap_is_watched_on_the_way_through() {
+    let world = corridor_with_a_box(0.8, [-0.6, 0.1]);
+    for stage in stages() {
+        let here = [1.0, 0.0, 0.0];
+        let (mut drive, lane) = on_sub_route(stage, 3.0, here, (4, 0.35), &world);
+        assert_eq!(drive.state([1.22, lane, 0.0]), State::SubRoute);
+        // The side is 0.23 m to the right of the face, as far as its cone reaches: a projection of 3.7.
+        for (beside, sonar, range, state) in [
+            (0.0, 6, 0.25, State::SubRoute),
+            (0.0, 6, 0.15, State::Stopped),
+            (0.0, 3, 0.35, State::Stopped),
+            (0.29, 0, 1.0, State::SubRoute),
+            (0.31, 0, 1.0, State::Stopped),
+            (-0.29, 0, 1.0, State::SubRoute),
+            (-0.31, 0, 1.0, State::Stopped),
+        ] {
+            let mut drive = drive.clone();
+            drive.hear(sonar, echo(range));
+            let found = drive.state([1.4, lane + beside, 0.0]);
+            assert_eq!(found, state, "{beside} {sonar} {range} {stage:?}");
+        }
+    }
+}
+
+/// Whoever has looked at the same place four times, and has not got 0.3 m on, takes it for blocked, whatever
+/// there is to be seen; on another route, or farther on, it counts anew.
+#[test]
+fn four_looks_are_enough() {
+    let seen = Look::of([-1.5, 1.5], 0.1, &[]);
+    for stage in stages() {
+        for (on, first) in [(0.28, State::Blocked), (0.32, State::OffEdge)] {
+            let mut drive = Drive::on(stage);
+            let mut look = |x: f32| drive.look([x, 0.0, 0.0], (4, 0.35), &seen, NOTHING).0;
+            for _ in 0..4 {
+                assert_eq!(look(1.0), State::OffEdge);
+            }
+            assert_eq!(look(1.0 + on), first, "{stage:?}");
+            if first == State::OffEdge {
+                for _ in 0..3 {
+                    assert_eq!(look(1.0), State::OffEdge);
+                }
+                assert_eq!(look(1.0), State::Blocked);
+            }
+            assert_eq!(drive.events(), [Event::Blocked(0)]);
+            let route = vec![stage.line([0.0, 0.0], [3.0, 0.0])];
+            drive.law.reroute(route).expect("a route");
+            let (state, _) = drive.look([1.0, 0.0, 0.0], (4, 0.35), &seen, NOTHING);
+            assert_eq!(state, State::OffEdge);
+        }
+        // A look at what is only heard: gone if no sonar hears it, and every sonar is heard.
+        for (reading, state) in [
+            (NOTHING, State::OffEdge),
+            (echo(0.35), State::SubRoute),
+            (SonarReading::Stale, State::SubRoute),
+        ] {
+            let mut drive = Drive::on(stage);
+            let (found, _) = drive.look([1.0, 0.0, 0.0], (4, 0.35), &seen, reading);
+            assert_eq!(found, state, "{reading:?} {stage:?}");
+        }
+    }
+}
+
+/// Held up is who was told to go and has stood for 3 s: by what is nearest and most along the way, a tenth of
+/// a metre and the range over the cosine.
+#[test]
+fn what_holds_up_is_near_and_ahead() {
+    let near = SonarReading::TooNear;
+    let table: [(f32, Heard, Option<usize>); 6] = [
+        // (0.1 + 0.5)/cos 50° = 0.93, (0.1 + 0.8)/cos 10° = 0.91.
+        (0.0, &[(1, echo(0.5)), (3, echo(0.8))], Some(3)),
+        (0.0, &[(3, echo(0.8)), (6, echo(0.5))], Some(3)),
+        // 0.86 and 0.91.
+        (0.0, &[(1, echo(0.45)), (3, echo(0.8))], Some(1)),
+        // 0.1/cos 75° = 0.39, 0.6/cos 5° = 0.6.
+        (-15.0, &[(0, near), (4, echo(0.5))], Some(0)),
+        // It is not ahead.
+        (5.0, &[(0, echo(0.3))], None),
+        (0.0, &[], None),
+    ];
+    for stage in stages() {
+        for (degrees, heard, expected) in table {
+            let here = [1.0, 0.0, degrees];
+            let mut drive = Drive::on(stage);
+            for (sonar, reading) in heard {
+                drive.hear(*sonar, *reading);
+            }
+            drive.view.speed = 0.0;
+            // The first time it is told, then it is seen to stand.
+            for _ in 0..31 {
+                drive.tick(here);
+                assert!(!drive.law.state().at_rest(), "{heard:?} {stage:?}");
+            }
+            let stopped = drive.state(here) == State::Stopped;
+            assert_eq!(stopped, expected.is_some(), "{heard:?} {stage:?}");
+            let Some(sonar) = expected else {
+                continue;
+            };
+            let range = match drive.view.sonar[stage.sonar(sonar)] {
+                SonarReading::Echo(range) => range.get(),
+                _ => 0.0,
+            };
+            let end = stage.vector_end(here, sonar, range);
+            let events = drive.events();
+            let [Event::HeldUp(0, found)] = events[..] else {
+                panic!("{events:?}");
+            };
+            assert!((found - end).amax() < 1e-4, "{found} {end} {stage:?}");
+        }
+        // Not who moves, or turns, or was not told to go.
+        let here = [1.0, 0.0, 0.0];
+        for (speed, turn_rate, held) in [
+            (0.1, 0.0, false),
+            (-0.1, 0.0, false),
+            (0.0, 0.1, false),
+            (0.0, -0.1, false),
+            (0.004, -0.015, true),
+        ] {
+            let mut drive = Drive::on(stage);
+            drive.hear(1, echo(0.5));
+            (drive.view.speed, drive.view.turn_rate) = (speed, turn_rate);
+            for _ in 0..32 {
+                drive.tick(here);
+            }
+            assert_eq!(
+                drive.law.state() == State::Stopped,
+                held,
+                "{speed} {turn_rate}"
+            );
+        }
+        let mut drive = Drive::on(stage);
+        drive.hear(1, echo(0.5));
+        drive.hear(7, SonarReading::Stale);
+        drive.view.speed = 0.0;
+        for _ in 0..40 {
+            drive.tick(here);
+        }
+        drive.hear(7, NOTHING);
+        for _ in 0..31 {
+            assert_eq!(drive.state(here), State::FollowEdge);
+        }
+        assert_eq!(drive.state(here), State::Stopped);
+    }
+    // Nor by what is behind, if there are sonars that hear it.
+    let route = vec![edge([0.0, 0.0], [3.0, 0.0])];
+    let mut law = Edge::<_, 16>::new(base(), paper(), ring_of(), route).expect("a law");
+    let mut view = quiet_view_of();
+    view.sonar = [NOTHING; 16];
+    view.sonar[11] = echo(0.3);
+    for now in (0..4000).step_by(100) {
+        view.now = Instant(now);
+        law.advise(&view);
+        assert_eq!(law.state(), State::FollowEdge);
+    }
+}
+
+/// A robot stands that neither drives nor turns, and is given a scan from since then, once.
+#[test]
+fn a_scan_is_from_since_the_robot_stands() {
+    let seen = Look::of([-1.5, 1.5], 0.1, &[]);
+    let here = [1.0, 0.0, 0.0];
+    for (speed, turn_rate, next) in [
+        (0.1, 0.0, State::Stopped),
+        (-0.006, 0.0, State::Stopped),
+        (0.0, 0.1, State::Stopped),
+        (0.0, -0.03, State::Stopped),
+        (0.004, 0.01, State::Measure),
+    ] {
+        let stage = stages().next().expect("a stage");
+        let mut drive = Drive::on(stage);
+        drive.hear(4, echo(0.35));
+        assert_eq!(drive.state(here), State::Stopped);
+        (drive.view.speed, drive.view.turn_rate) = (speed, turn_rate);
+        assert_eq!(drive.state(here), next, "{speed} {turn_rate}");
+    }
+    let mut drive = Drive::on(stages().next().expect("a stage"));
+    drive.hear(4, echo(0.35));
+    drive.tick(here);
+    drive.view.speed = 0.0;
+    // It stands, is pushed, and stands again.
+    assert_eq!(drive.state(here), State::Measure);
+    let before = drive.view.now.0;
+    drive.view.speed = 0.1;
+    drive.tick(here);
+    drive.view.speed = 0.0;
+    drive.tick(here);
+    let since = drive.view.now.0;
+    drive.tick(here);
+    for (taken_at, taken) in [
+        (before, false),
+        (since - 1, false),
+        (since, true),
+        (since, false),
+    ] {
+        assert_eq!(drive.law.wants_scan(), taken || taken_at < since);
+        drive.law.take_scan(&seen.scan(taken_at));
+        let measured = drive.events();
+        let measured = measured
+            .iter()
+            .any(|event| matches!(event, Event::Measured(..)));
+        assert_eq!(measured, taken, "{taken_at}");
+    }
 }
