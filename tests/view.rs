@@ -1278,6 +1278,14 @@ proptest! {
         }
     }
 
+    /// A share of a speed is that share; what is no share, NaN too, leaves none.
+    #[test]
+    fn speeds_are_scaled(metres_per_second in 0.0_f32..=10.0, factor in prop_oneof![0.0_f32..=1.0, any_f32()]) {
+        let speed = Speed::metres_per_second(metres_per_second).expect("a speed");
+        let share = if (0.0..=1.0).contains(&factor) { factor } else { 0.0 };
+        prop_assert_eq!(speed.scaled(factor).get(), metres_per_second * share);
+    }
+
     /// Angles are added, taken from each other and mirrored on the circle.
     #[test]
     fn angles_are_on_the_circle(a in -9.4_f32..9.4, b in -9.4_f32..9.4) {
