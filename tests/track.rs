@@ -335,18 +335,22 @@ fn what_is_nearer_takes_over() {
 /// little behind it are none.
 #[test]
 fn it_is_gone_when_a_sonar_sees_past_it() {
-    let looks = |heading: f32, range: f32| {
+    let looks = |heading: f32, turn: f32, range: f32| {
         let mut following = Following::new();
         let [ahead, other] = [0.17, heading].map(|heading| following.near(heading));
         following.tick(100, &[(ahead, 1.0)]);
+        following.pose[2] = turn;
         let kept = |told: Option<Obstacle>| told.is_some_and(|told| told.distance.get() < 1.01);
         (0..5)
             .take_while(|_| kept(following.tick(100, &[(other, range)])))
             .count()
     };
-    assert_eq!(looks(0.17, 3.0), 2, "past it");
-    assert_eq!(looks(0.17, 1.45), 2, "just past it");
-    assert_eq!(looks(-0.52, 3.0), 5, "elsewhere");
+    assert_eq!(looks(0.17, 0.0, 3.0), 2, "past it");
+    assert_eq!(looks(0.17, 0.0, 1.45), 2, "just past it");
+    assert_eq!(looks(-0.52, 0.0, 3.0), 5, "elsewhere");
+    // 12° off the axis, and so too far aside from the echo to be what is heard.
+    assert_eq!(looks(0.17, 0.21, 1.45), 2, "just past it");
+    assert_eq!(looks(0.17, 0.21, 1.37), 5, "not past it by enough");
 }
 
 /// A look that stands is no new one: the time of the last one counts.
