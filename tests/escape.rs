@@ -376,12 +376,14 @@ fn it_does_not_try_the_same_again() {
             // In vain: it is over after six seconds.
             attempting.after(6_000);
         }
+        let off = |one: f32, other: f32| sidestep_spec::avoid::wrap(f64::from(one - other)).abs();
         for (i, one) in directions.iter().enumerate() {
             for other in &directions[i + 1..] {
-                let off = sidestep_spec::avoid::wrap(f64::from(one - other)).abs();
-                assert!(off > 0.78, "{directions:?}");
+                assert!(off(*one, *other) > 0.78, "{directions:?}");
             }
         }
+        // No farther from the goal's direction than it must be.
+        assert!(off(directions[0], directions[1]) < 1.5, "{directions:?}");
     }
 }
 
