@@ -209,14 +209,24 @@ fn commissioned() -> Commissioned {
     }
 }
 
-/// Whatever a state asks for, the advice is within the limits, for any view and any path. What left and
-/// right mean has no part in it.
+/// Whether somebody near is only remembered: either.
+#[cfg(kani)]
+fn any_memory<const N: usize>(_law_of_s3: &Interact, _view: &sidestep::view::View<N>) -> bool {
+    kani::any()
+}
+
+/// Whatever a state asks for, the advice is within the limits, for any view and any path, whether somebody
+/// near is only remembered or not. What left and right mean has no part in it.
 //= interact.INV-5
 #[cfg_attr(kani, kani::proof)]
 #[cfg_attr(kani, kani::solver(minisat))]
 #[cfg_attr(kani, kani::unwind(40))]
 #[cfg_attr(kani, kani::stub(crate::math::sin, crate::proofs::math::any_sin))]
 #[cfg_attr(kani, kani::stub(crate::math::cos, crate::proofs::math::any_cos))]
+#[cfg_attr(
+    kani,
+    kani::stub(crate::interact::Interact::somebody_unseen, any_memory)
+)]
 pub fn advice_is_within_limits() {
     let law_of_s3 = Interact::new(settings(), PIONEER, commissioned(), true);
     let asked = match kani::any::<u8>() % 6 {
@@ -241,5 +251,9 @@ pub fn advice_is_within_limits() {
     ));
     kani::cover!(advice.speed > 0.1, "forward");
     kani::cover!(advice.speed < 0.0, "backward");
+    kani::cover!(
+        asked == Drive::Backward && advice.speed > -PIONEER.reverse_speed_max,
+        "backward, slower for who is remembered"
+    );
     kani::cover!(advice.turn_rate < -0.1, "to the right");
 }
