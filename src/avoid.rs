@@ -180,7 +180,9 @@ fn quotient(dividend: f32, divisor: f32) -> Option<f32> {
 pub struct QuarterTurns(f32);
 
 impl QuarterTurns {
-    /// S1 E5: Δθ = (π/2)(k_θ/d_o), at most half a turn; half a turn at distance 0.
+    /// S1 E5, at most half a turn; half a turn at distance 0:
+    ///
+    /// $$\Delta\theta = \frac{\pi}{2} \frac{k_\theta}{d_o}$$
     //= avoid.INV-6
     #[must_use]
     pub fn at_distance(distance: Length, turn_distance: Length) -> Self {
@@ -247,8 +249,10 @@ impl Side {
     }
 }
 
-/// S1 E5: heading of the maneuver, θ_m = θ_ref + σ·Δθ, wrapped. The reference is the goal heading
-/// latched when the maneuver began, not the current heading (ER-S1-03).
+/// S1 E5: heading of the maneuver, wrapped. The reference is the goal heading latched when the maneuver
+/// began, not the current heading (ER-S1-03). σ is 1 to the left and −1 to the right.
+///
+/// $$\theta_m = \theta_{ref} + \sigma \Delta\theta$$
 //= avoid.INV-8
 #[must_use]
 pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Angle {
@@ -258,7 +262,9 @@ pub fn maneuver_heading(reference: Angle, side: Side, turn: QuarterTurns) -> Ang
     }
 }
 
-/// S1 E7: speed of the maneuver, v_R = v_max(1 − |½ − |Δθ|/π|), in [v_max/2, v_max].
+/// S1 E7: speed of the maneuver, in [v_max/2, v_max].
+///
+/// $$v_R = v_{max} \left(1 - \left|\frac{1}{2} - \frac{|\Delta\theta|}{\pi}\right|\right)$$
 //= avoid.INV-9
 #[must_use]
 pub fn maneuver_speed(speed_max: Speed, turn: QuarterTurns) -> Speed {

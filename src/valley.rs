@@ -441,9 +441,10 @@ impl Geometry {
         valleys
     }
 
-    /// E25, E26: the share of the greatest speed for a valley `width` radians wide:
-    /// log θ_r/log θ_max with both in degrees, 0 up to one degree and for what is no number, 1 from
-    /// the whole angle of view on.
+    /// E25, E26: the share of the greatest speed for a valley `width` radians wide, 0 up to one degree
+    /// and for what is no number, 1 from the whole angle of view on. Both angles are in degrees.
+    ///
+    /// $$\frac{\log \theta_r}{\log \theta_{max}}$$
     //= valley.INV-4
     //= valley.INV-5
     #[must_use]

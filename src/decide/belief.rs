@@ -99,7 +99,9 @@ impl<const S: usize> Belief<S> {
         &self.0
     }
 
-    /// S2 E16: the belief one step later, b̄_j = Σ_i b_i·P_ij.
+    /// S2 E16: the belief one step later.
+    ///
+    /// $$\bar b_j = \sum_i b_i P_{ij}$$
     #[must_use]
     pub fn predicted(&self, transition: &TransitionMatrix<S>) -> Self {
         let mut parts = [0; S];
@@ -113,9 +115,11 @@ impl<const S: usize> Belief<S> {
         Self(completed(parts))
     }
 
-    /// S2 E13 and E21: the belief after an observation with these likelihoods, b_j = η·ℓ_j·b̄_j. The
-    /// odds of two states are multiplied by the ratio of their likelihoods. Rounded like
+    /// S2 E13 and E21: the belief after an observation with these likelihoods ℓ. The odds of two states
+    /// are multiplied by the ratio of their likelihoods. Rounded like
     /// [`from_weights`](Self::from_weights), twice more.
+    ///
+    /// $$b_j = \eta \ell_j \bar b_j$$
     ///
     /// # Errors
     /// [`NoBelief`] if a likelihood is not a number from 0 to 10³⁰, or no state that is possible

@@ -149,8 +149,9 @@ impl<const A: usize, const S: usize> LossTable<A, S> {
         by != action && better
     }
 
-    /// S2 E22: the posterior expected loss of each action, B(p, a) = Σ_θ L(θ, a)·p(θ|z), exactly, in
-    /// milliseconds times [`ONE`].
+    /// S2 E22: the posterior expected loss of each action, exactly, in milliseconds times [`ONE`].
+    ///
+    /// $$B(p, a) = \sum_\theta L(\theta, a) p(\theta \mid z)$$
     //= decide.INV-7
     #[must_use]
     pub fn expected(&self, belief: &Belief<S>) -> [i64; A] {
