@@ -14,9 +14,10 @@ use crate::track::Obstacle;
 use crate::view::View;
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
-/// S1 E1: the angle between the line to the obstacle and the robot's direction of travel,
-/// θ_OR = π − (θ_R + β), wrapped. `bearing` is the measured bearing β; the paper uses half the
-/// camera's angle of view for it.
+/// S1 E1: the angle between the line to the obstacle and the robot's direction of travel, wrapped.
+/// `bearing` is the measured bearing β; the paper uses half the camera's angle of view for it.
+///
+/// $$\theta_{OR} = \pi - (\theta_R + \beta)$$
 #[must_use]
 pub fn obstacle_robot_angle(heading: Angle, bearing: Angle) -> Angle {
     Angle::HALF_TURN.minus(heading.plus(bearing))
@@ -58,8 +59,10 @@ pub fn lateral_bound(seen: f32, own: f32) -> f32 {
 
 /// S1 E3: speed of a moving obstacle from a camera, clamped to `speed_max` = v_o,max.
 ///
-/// v_o = min(v_o,max, E2/cos θ_o) for θ_o in [0, 60°]; v_o,max, saturated, for every other θ_o and
-/// for every sighting that is not usable. Total: any bit pattern gives a speed in [0, v_o,max].
+/// $$v_o = \min\left(v_{o,max}, \frac{v_{E2}}{\cos \theta_o}\right)$$
+///
+/// with E2's speed v_E2, for θ_o in [0, 60°]; v_o,max, saturated, for every other θ_o and for every
+/// sighting that is not usable. Total: any bit pattern gives a speed in [0, v_o,max].
 //= avoid.INV-1
 //= avoid.INV-3
 #[must_use]
@@ -114,9 +117,10 @@ pub fn image_direction(global_orientation: f32) -> Result<(f32, bool), OutOfRang
     Ok((folded.clamp(0.0, FRAC_PI_2), approaching))
 }
 
-/// S1 E4, for reporting: seconds until robot and obstacle are level along the axis of travel,
-/// t = d_o·m/(v_R|sin θ_R| + v_o|sin θ_o|), where m is the least |sin(θ_R + β)| over the bearings
-/// |β| ≤ `half_angle`. `None` if they never are.
+/// S1 E4, for reporting: seconds until robot and obstacle are level along the axis of travel, where m
+/// is the least |sin(θ_R + β)| over the bearings |β| ≤ `half_angle`. `None` if they never are.
+///
+/// $$t = \frac{d_o m}{v_R |\sin \theta_R| + v_o |\sin \theta_o|}$$
 ///
 /// This is not what decides: see [`contact_time_bound`].
 #[must_use]
@@ -146,9 +150,11 @@ pub fn time_to_collision(
     )
 }
 
-/// The sound bound on S1 E4: no contact can happen before
-/// t_lb = max(0, d_o − R_c)/(v_R + v_o) seconds, whatever the directions, while the robot is no
-/// faster than `speed` and the obstacle no faster than `obstacle_speed`. `None` is "never".
+/// The sound bound on S1 E4, in seconds: no contact can happen before it, whatever the directions,
+/// while the robot is no faster than `speed` and the obstacle no faster than `obstacle_speed`. `None`
+/// is "never".
+///
+/// $$t_{lb} = \frac{\max(0, d_o - R_c)}{v_R + v_o}$$
 #[must_use]
 pub fn contact_time_bound(
     distance: Length,

@@ -119,7 +119,9 @@ impl EdgeConfig {
 
 // ------------------------------------------------------------------------------ the equations
 
-/// S4 E1: how near an echo is, N1 = 10·(R − r)/R for r ≤ R, else 0; 0 to 10.
+/// S4 E1: how near an echo is, for r ≤ R, else 0; 0 to 10.
+///
+/// $$N_1 = 10 \frac{R - r}{R}$$
 //= edge.INV-1
 //= edge.INV-4
 #[must_use]
@@ -133,8 +135,10 @@ pub fn nearness(range: Length, config: &EdgeConfig) -> f32 {
     }
 }
 
-/// S4 E2: how near the edge the robot is, N2 = 1 − 0.6·d/D for d ≤ D, 0.4 to 1. `distance` is the
-/// robot's distance d from the edge, either side, m.
+/// S4 E2: how near the edge the robot is, for d ≤ D, 0.4 to 1. `distance` is the robot's distance d
+/// from the edge, either side, m.
+///
+/// $$N_2 = 1 - 0.6 \frac{d}{D}$$
 ///
 /// Beyond D (and for NaN) there is no value: the detector is blind there, and blind is not free
 /// (ER-S4-07).
@@ -145,9 +149,11 @@ pub fn closeness(distance: f32, config: &EdgeConfig) -> Option<f32> {
     (part <= 1.0).then_some(1.0 - 0.6 * part)
 }
 
-/// S4 E3 and E4: the projection P = N1·N2·max(0, cos α) of a sonar vector on the actual edge, 0 to
-/// 10·N2. `cosine` is that of the angle α between the sonar's axis and the actual edge; what looks
-/// back counts as 0, and so does NaN.
+/// S4 E3 and E4: the projection of a sonar vector on the actual edge, 0 to 10·N2. `cosine` is that of
+/// the angle α between the sonar's axis and the actual edge; what looks back counts as 0, and so does
+/// NaN.
+///
+/// $$P = N_1 N_2 \max(0, \cos \alpha)$$
 //= edge.INV-3
 //= edge.INV-5
 #[must_use]

@@ -29,8 +29,10 @@ pub struct DifferentialDrive {
     wheel_base: f32,
 }
 
-/// Velocity in the plane from forward speed (m/s) and heading: ẋ = v cos θ, ẏ = v sin θ
-/// (S2 E1, E2). The third, θ̇ = ω (S2 E3), needs no formula.
+/// Velocity in the plane from forward speed (m/s) and heading (S2 E1 to E3; the third is the turn
+/// rate itself).
+///
+/// $$\dot x = v \cos \theta \qquad \dot y = v \sin \theta \qquad \dot\theta = \omega$$
 #[must_use]
 pub fn velocity(speed: f32, heading: Angle) -> Vector2<f32> {
     Vector2::new(math::cos(heading.get()), math::sin(heading.get())) * speed
@@ -65,7 +67,9 @@ impl DifferentialDrive {
         })
     }
 
-    /// Rates of the wheels for a motion of the robot: ω_r,l = (v ± ωL/2)/R.
+    /// Rates of the wheels for a motion of the robot.
+    ///
+    /// $$\omega_{r,l} = \frac{v \pm \omega L/2}{R}$$
     ///
     /// # Errors
     /// [`OutOfRange`] if the speed is not within ±10 m/s or the turn rate not within ±20 rad/s.

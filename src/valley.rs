@@ -29,7 +29,9 @@ const FARTHEST: f32 = 20.0;
 
 impl Person {
     /// A person as S3 has them: lateral place X and distance Z, with the shoulder radius r_p, all in
-    /// m. The depth is Z cos δ = √(Z² − X²) (E3, E4).
+    /// m. The depth is (E3, E4)
+    ///
+    /// $$Z \cos \delta = \sqrt{Z^2 - X^2}$$
     ///
     /// # Errors
     /// [`OutOfRange`] if Z is not in 0 to 20 m, |X| greater than Z, or r_p not in 0.05 to 1 m.
@@ -89,7 +91,9 @@ impl Person {
         self.radius
     }
 
-    /// E3: bearing δ = asin(X/Z) in radians, in [−π/2, π/2]; 0 for somebody at the robot's place.
+    /// E3: bearing in radians, in [−π/2, π/2]; 0 for somebody at the robot's place.
+    ///
+    /// $$\delta = \arcsin \frac{X}{Z}$$
     #[must_use]
     pub fn bearing(&self) -> f32 {
         math::atan2(self.lateral, self.depth)

@@ -32,8 +32,9 @@ pub use second_look::SecondLook;
 pub use sensor::{CameraLook, CameraModel, Hearing, SonarModel};
 
 /// S2 E7 with E6: seconds until robot and obstacle are level along the axis of travel, for an
-/// obstacle that is seen at `bearing`, t = d·|sin(θ_R + β)|/(v_R|sin θ_R| + v_o|sin θ_o|). `None` if
-/// they never are.
+/// obstacle that is seen at `bearing` β. `None` if they never are.
+///
+/// $$t = \frac{d |\sin(\theta_R + \beta)|}{v_R |\sin \theta_R| + v_o |\sin \theta_o|}$$
 ///
 /// For people to read. No bound: see [`crate::avoid::contact_time_bound`].
 #[must_use]
