@@ -1457,8 +1457,8 @@ pub fn unexplained<const N: usize>(
 }
 
 /// Steers by an error of heading in radians, no faster than `speed` in m/s: from `error_max` on, the
-/// robot turns before it drives. Total: the turn rate is within ±ω_max and
-/// the speed in [0, `speed`], whatever comes in.
+/// robot turns before it drives. Total: the turn rate is within ±ω_max and the speed in [0, `speed`],
+/// whatever comes in.
 //= edge.INV-8
 #[must_use]
 pub fn steer(error: f32, speed: f32, error_max: f32, config: &Config) -> Advice {

@@ -895,12 +895,19 @@ impl Interact {
         };
         if self.taken_in != Some(people.taken_at) && self.camera(view.now) {
             let before = self.taken_in.replace(people.taken_at);
+            let gap = before.and_then(|before| people.taken_at.since(before));
+            let age_max = milliseconds(self.settings.camera_age_max);
+            let looked_on = gap.is_some_and(|gap| gap <= age_max);
             let pose = self.pose_at(people.taken_at, &view.pose);
             let mut i = 0;
             while i < TRACKS {
                 if let Some(track) = &mut self.tracks[i] {
                     track.in_sight = false;
                     track.gesture = None;
+                    // In a longer pause nobody has looked: the time of looking begins anew.
+                    if !looked_on {
+                        track.missed = None;
+                    }
                 }
                 i += 1;
             }
@@ -918,7 +925,7 @@ impl Interact {
                     }
                 }
             }
-            self.miss(&pose, people.taken_at, before);
+            self.miss(&pose, people.taken_at);
         }
         self.forget(view.now);
     }
@@ -996,11 +1003,8 @@ impl Interact {
         near.map(|(i, _)| i).or(empty).unwrap_or(oldest)
     }
 
-    /// Notes who is not in the picture although it shows their place. The picture `before` was so long
-    /// ago that nobody looked in between, or it was not.
-    fn miss(&mut self, pose: &Pose, taken_at: Instant, before: Option<Instant>) {
-        let gap = before.and_then(|before| taken_at.since(before));
-        let looked_on = gap.is_some_and(|gap| gap <= milliseconds(self.settings.camera_age_max));
+    /// Notes who is not in the picture although it shows their place.
+    fn miss(&mut self, pose: &Pose, taken_at: Instant) {
         let mut i = 0;
         while i < TRACKS {
             if let Some(track) = self.tracks[i]
@@ -1008,10 +1012,9 @@ impl Interact {
             {
                 let looked_at = self.looks_at(&track, pose);
                 if let Some(track) = &mut self.tracks[i] {
-                    track.missed = match track.missed {
-                        _ if !looked_at => None,
-                        Some(since) if looked_on => Some(since),
-                        _ => Some(taken_at),
+                    track.missed = match (looked_at, track.missed) {
+                        (false, _) => None,
+                        (true, since) => since.or(Some(taken_at)),
                     };
                 }
             }

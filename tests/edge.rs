@@ -107,6 +107,14 @@ fn cast(from: [f64; 2], angle: f64, segments: &[Segment]) -> Option<f64> {
     hits.reduce(f64::min)
 }
 
+/// What so many beams see from a place, the first in this direction (rad) and each a step on: ranges in
+/// metres, and infinity where they meet nothing.
+fn scanned(from: [f64; 2], first: f64, step: f64, beams: u32, world: &[Segment]) -> Vec<f32> {
+    let seen = |i: u32| cast(from, first + f64::from(i) * step, world);
+    let metres = |mm: Option<f64>| mm.map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32);
+    (0..beams).map(|i| metres(seen(i))).collect()
+}
+
 /// What sonar `i` at a pose (mm, degrees) hears: the nearest of rays across its cone.
 fn listen(i: usize, at: [f64; 3], half_angle: f64, segments: &[Segment]) -> Option<f64> {
     let sonar = &BaseParameters::P3DX.sonars[i];
@@ -388,13 +396,8 @@ proptest! {
         ];
         world.extend(sides([front, right], [front + depth, left]));
         let step = 0.25_f64.to_radians();
-        let beams = 721;
-        let ranges: Vec<f32> = (0..beams)
-            .map(|i| {
-                let angle = heading.to_radians() - FRAC_PI_2 + f64::from(i) * step;
-                cast([0.0, lateral], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
-            })
-            .collect();
+        let first = heading.to_radians() - FRAC_PI_2;
+        let ranges = scanned([0.0, lateral], first, step, 721, &world);
         let scan = Scan::new(
             CENTRE,
             -FRAC_PI_2 as f32, step as f32, 8.0, &ranges, Instant(0),
@@ -820,12 +823,7 @@ fn corridor_scan(free: f64, step: f64) -> Vec<f32> {
     ];
     world.extend(sides([500.0, -600.0], [750.0, 600.0 - free]));
     let beams = (std::f64::consts::PI / step).round() as u32 + 1;
-    (0..beams)
-        .map(|i| {
-            let angle = -FRAC_PI_2 + f64::from(i) * step;
-            cast([0.0, 0.0], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
-        })
-        .collect()
+    scanned([0.0, 0.0], -FRAC_PI_2, step, beams, &world)
 }
 
 fn measure(free: f64, step_deg: f64) -> FreeWay {
@@ -893,13 +891,8 @@ fn the_field_of_view_bounds_the_way() {
         let world = sides([1000.0, 1000.0 * low], [1200.0, 1000.0 * low + 200.0]);
         // All round it ends a step before it began.
         let beams = (2.0 * half / 0.5) as u32 + u32::from(half < 180.0);
-        let ranges: Vec<f32> = (0..beams)
-            .map(|i| {
-                let angle = -half.to_radians() + f64::from(i) * step;
-                let hit = cast([0.0, 1000.0 * aside], angle, &world);
-                hit.map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
-            })
-            .collect();
+        let from = [0.0, 1000.0 * aside];
+        let ranges = scanned(from, -half.to_radians(), step, beams, &world);
         let placement = Placement {
             x: 0.0,
             y: aside as f32,
@@ -947,12 +940,7 @@ fn what_only_a_sonar_hears_counts() {
         [[-1000.0, -600.0], [5000.0, -600.0]],
         [[-1000.0, 600.0], [5000.0, 600.0]],
     ];
-    let ranges: Vec<f32> = (0..361)
-        .map(|i| {
-            let angle = -FRAC_PI_2 + f64::from(i) * step;
-            cast([0.0, 0.0], angle, &world).map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
-        })
-        .collect();
+    let ranges = scanned([0.0, 0.0], -FRAC_PI_2, step, 361, &world);
     let first = -FRAC_PI_2 as f32;
     let scan = Scan::new(CENTRE, first, step as f32, 8.0, &ranges, Instant(0)).expect("a scan");
     let along = edge([0.0, 0.0], [3.0, 0.0]);
@@ -991,9 +979,8 @@ fn stages() -> impl Iterator<Item = Stage> {
 impl Stage {
     /// A point of the edge's frame in the world.
     fn point(&self, [x, y]: [f32; 2]) -> Vector2<f32> {
-        let (sin, cos) = self.course.to_radians().sin_cos();
-        let y = self.side * y;
-        point(self.start[0], self.start[1]) + point(cos * x - sin * y, sin * x + cos * y)
+        let [start_x, start_y] = self.start;
+        pose(start_x, start_y, self.course).to_world(point(x, self.side * y))
     }
 
     fn line(&self, from: [f32; 2], to: [f32; 2]) -> PlannedEdge {
@@ -1089,17 +1076,13 @@ impl Look {
         let at = here.to_world(point(placement.x, placement.y)) * 1000.0;
         let course = f64::from(here.heading.get() + placement.heading);
         let step = 0.25_f64.to_radians();
-        let ranges = (0..721).map(|i| {
-            let angle = course - FRAC_PI_2 + f64::from(i) * step;
-            cast([at.x.into(), at.y.into()], angle, world)
-                .map_or(f32::INFINITY, |mm| (mm / 1000.0) as f32)
-        });
+        let from = [at.x.into(), at.y.into()];
         Self {
             placement,
             first: -FRAC_PI_2 as f32,
             step: step as f32,
             reach: 8.0,
-            ranges: ranges.collect(),
+            ranges: scanned(from, course - FRAC_PI_2, step, 721, world),
         }
     }
 

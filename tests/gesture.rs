@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use sidestep::gesture::{
     Classifier, Debounce, Features, Frame, Gesture, Model, NeuralNetwork, PEOPLE_MAX, Person,
-    Point, Prototypes, Recognizer, Rejection, Settings, Skeleton, SupportVectorMachine,
+    Point, Prototypes, Recognizer, Rejection, Settings, Skeleton, SupportVectorMachine, spelled_by,
 };
 use sidestep::quantity::Instant;
 use sidestep_spec::gesture as law;
@@ -490,26 +490,29 @@ fn codes_are_codes() {
 #[test]
 fn weights_are_in_range() {
     for (_, model) in MODELS {
-        match model.classifier() {
+        let margin = match model.classifier() {
             Classifier::SupportVectorMachine(machine) => {
                 SupportVectorMachine::new(*machine.planes()).expect("weights");
+                Model::SVM_MARGIN
             }
             Classifier::NeuralNetwork(net) => {
                 let (hidden, output) = net.weights();
                 NeuralNetwork::new(*hidden, *output).expect("weights");
+                Model::NET_MARGIN
             }
-        }
+        };
         Prototypes::new(*model.prototypes().get()).expect("prototypes");
-        let margins = [Model::SVM_MARGIN, Model::NET_MARGIN];
-        assert!(margins.contains(&model.margin()));
-        assert_eq!(model.unlikeness(), Model::UNLIKENESS);
+        assert_eq!(
+            (model.margin(), model.unlikeness()),
+            (margin, Model::UNLIKENESS)
+        );
     }
 }
 
 /// A bit that is 0 is not set, and no margin is left.
 #[test]
 fn zero_spells_nothing() {
-    let spelled = sidestep::gesture::spelled_by(&[0.0; 3]).expect("a gesture");
+    let spelled = spelled_by(&[0.0; 3]).expect("a gesture");
     assert_eq!((spelled.gesture.code(), spelled.margin), (0, 0.0));
 }
 

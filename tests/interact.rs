@@ -495,6 +495,12 @@ impl Stage {
         panic!("{name} is not reached, but {}", self.name());
     }
 
+    /// The robot waits for these people until one of them raises the arm, and is led.
+    fn led<P: AsRef<[Someone]>>(self, people: impl Fn(Option<Gesture>) -> P) -> Self {
+        self.shown(people(None).as_ref(), "wait")
+            .shown(people(Some(Gesture::MasterSelect)).as_ref(), "master")
+    }
+
     fn name(&self) -> &'static str {
         self.law.state().name()
     }
@@ -1276,6 +1282,12 @@ fn mirrored(people: &[Someone]) -> Vec<Someone> {
     people.iter().map(mirror).collect()
 }
 
+/// Several people, and their mirror image.
+fn on_either_side(places: &[[f32; 2]]) -> [Vec<Someone>; 2] {
+    let people = several(places);
+    [mirrored(&people), people]
+}
+
 const AHEAD: [f32; 2] = [7.0, 0.0];
 /// Two with 1.6 m between them, 28° apart: (2 · 0.25 + 0.25 + 0.25 + 0.5) m is wanted.
 const TWO: [[f32; 2]; 2] = [[3.2, 0.8], [3.2, -0.8]];
@@ -1323,7 +1335,7 @@ fn who_is_in_the_way() {
     ];
     for place in PLACES {
         for (people, goal, expected) in cases {
-            for people in [several(people), mirrored(&several(people))] {
+            for people in on_either_side(people) {
                 let mut stage = at(pose(place), *goal);
                 stage.cycle(100, Some(&people));
                 assert_eq!(stage.name(), *expected, "{people:?} at {place:?}");
@@ -1365,7 +1377,7 @@ fn when_the_way_is_free() {
     for place in PLACES {
         let waiting = at(pose(place), AHEAD).shown(&several(&[[2.0, 0.0]]), "wait");
         for (people, expected) in cases {
-            for people in [several(people), mirrored(&several(people))] {
+            for people in on_either_side(people) {
                 let mut stage = waiting.clone();
                 stage.cycle(100, Some(&people));
                 assert_eq!(stage.name(), *expected, "{people:?} at {place:?}");
@@ -1469,7 +1481,7 @@ fn who_is_in_the_path() {
         moved.pose.position = start.to_world(Vector2::new(1.0, 0.0));
         for (intruders, intruded) in cases {
             let from_here: Vec<_> = intruders.iter().map(|[x, y]| [x - 1.0, *y]).collect();
-            for people in [several(&from_here), mirrored(&several(&from_here))] {
+            for people in on_either_side(&from_here) {
                 let mut stage = moved.clone();
                 // Not one of the two: other numbers.
                 let people: Vec<_> = people
@@ -1535,8 +1547,7 @@ fn states_end_in_their_time() {
     let wall = several(&[[2.4, 0.9], [2.4, 0.0], [2.4, -0.9]]);
     let no_path = start().shown(&wall, "no-free-path");
     ends_after(&no_path, 4_000, &wall, "ask-interact");
-    let claims = [one(1, [3.2, 0.1], Some(Gesture::MasterSelect))];
-    let led = start().shown(&person, "wait").shown(&claims, "master");
+    let led = start().led(|gesture| [one(1, [3.2, 0.1], gesture)]);
     ends_after(&led, 21_000, &person, "wait");
     // Out of sight, but seen for the last time just now.
     ends_after(&led, 2_001, &[], "wait");
@@ -1557,9 +1568,7 @@ fn states_end_in_their_time() {
 #[test]
 fn who_orders_stays_master() {
     let person = |gesture| [one(1, [3.2, 0.1], gesture)];
-    let led = at(pose(PLACES[0]), AHEAD)
-        .shown(&person(None), "wait")
-        .shown(&person(Some(Gesture::MasterSelect)), "master");
+    let led = at(pose(PLACES[0]), AHEAD).led(person);
     for (gesture, expected) in [
         (Gesture::Forward, "master"),
         (Gesture::Backward, "master"),
@@ -2161,8 +2170,7 @@ fn a_master_is_kept_without_a_way() {
         people
     };
     let stuck = at(pose(PLACES[0]), AHEAD)
-        .shown(&wall(None), "wait")
-        .shown(&wall(Some(Gesture::MasterSelect)), "master")
+        .led(wall)
         .shown(&wall(Some(Gesture::Left)), "no-free-path");
     let mut lowered = stuck.clone();
     for (gesture, name) in [(Some(Gesture::Left), "no-free-path"), (None, "master")] {
@@ -2200,9 +2208,7 @@ fn where_a_master_leads() {
     for place in PLACES {
         for side in [1.0, -1.0] {
             let master = |gesture| one(9, [3.2, side * 0.6], gesture);
-            let asked = at(pose(place), AHEAD)
-                .shown(&[master(None)], "wait")
-                .shown(&[master(Some(Gesture::MasterSelect))], "master");
+            let asked = at(pose(place), AHEAD).led(|gesture| [master(gesture)]);
             for (others, [speed, turn_rate]) in cases {
                 let mut people = several(others);
                 people.push(master(forward));
@@ -2237,9 +2243,7 @@ fn where_a_master_leads() {
         stage.pose.heading = Angle::HALF_TURN;
         stage.cycle(100, Some(others));
         stage.pose.heading = Angle::ZERO;
-        let mut stage = stage
-            .shown(&[master(None)], "wait")
-            .shown(&[master(Some(Gesture::MasterSelect))], "master");
+        let mut stage = stage.led(|gesture| [master(gesture)]);
         stage.cycle(100, Some(&[master(forward)])).speed
     };
     assert_eq!(to_master([2.0, 0.0], &[]), 0.0);
@@ -2248,9 +2252,7 @@ fn where_a_master_leads() {
     assert!((to_master([3.2, 0.0], &behind) - 0.6 * 0.2).abs() < 1e-6);
     // Just level with it.
     let beside = [one(1, [0.0, 1.0], None), one(9, [3.2, 0.0], forward)];
-    let mut stage = at(pose(PLACES[0]), AHEAD)
-        .shown(&[one(9, [3.2, 0.0], None)], "wait")
-        .shown(&[one(9, [3.2, 0.0], Some(Gesture::MasterSelect))], "master");
+    let mut stage = at(pose(PLACES[0]), AHEAD).led(|gesture| [one(9, [3.2, 0.0], gesture)]);
     assert_eq!(stage.cycle(100, Some(&beside)).speed, 0.2);
 }
 
